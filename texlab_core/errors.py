@@ -1,0 +1,42 @@
+"""Errors that a user can cause and mend: one sentence each, saying what, what is allowed and what was given."""
+
+from __future__ import annotations
+
+
+class InputError(ValueError):
+    """Bad input; ``str(error)`` is one clear sentence for the user."""
+
+
+class ParamError(InputError):
+    """A parameter that is unknown, of the wrong kind or out of range.
+
+    Parameters
+    ----------
+    field
+        Name of the parameter, as in the ``Params`` dataclass.
+    allowed
+        What would have been accepted, in words.
+    given
+        The offending value.
+    """
+
+    def __init__(self, field: str, allowed: str, given: object) -> None:
+        shown = repr(given)
+        if len(shown) > 60:
+            shown = shown[:57] + "..."
+        super().__init__(f"{field}: must be {allowed}, got {shown}.")
+        self.field = field
+        self.allowed = allowed
+        self.given = given
+
+
+class ImageError(InputError):
+    """An image that cannot be read, or cannot be used as asked."""
+
+
+class RecipeError(InputError):
+    """A recipe (in a saved result) that is missing, malformed or cannot be followed."""
+
+
+class Cancelled(Exception):
+    """The run was stopped because ``should_stop`` said so."""

@@ -1,0 +1,1 @@
+"""One file per synthesis method; each registers itself with ``texlab_core.registry.register``."""

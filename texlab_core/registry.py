@@ -1,0 +1,115 @@
+"""The synthesis methods: every file of ``texlab_core.methods`` registers itself here."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import importlib
+import pkgutil
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+from texlab_core.errors import ParamError
+from texlab_core.steps import Output, Step
+
+if TYPE_CHECKING:
+    from texlab_core.params import Params
+
+Steps = Generator[Step, None, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class InputSpec:
+    """One named input that a method takes."""
+
+    name: str
+    help: str
+    kind: Literal["image", "data", "arrays"] = "image"
+    required: bool = True
+
+
+EXEMPLAR = InputSpec("exemplar", "The texture to make more of.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A synthesis method.
+
+    Parameters
+    ----------
+    id
+        Lower-case words with hyphens; used on the command line and in recipes.
+    title
+        For people.
+    summary
+        One sentence: what it does.
+    reference
+        The paper.
+    params
+        Its ``Params`` class.
+    analyze
+        ``analyze(inputs, params)``: generator of Steps that returns the model. Deterministic; it depends on
+        the inputs and on the parameters of stage ``analysis`` only.
+    synthesize
+        ``synthesize(model, inputs, params, size, streams)``: generator of Steps that returns an ``Output``.
+    fails_on
+        What it is known to fail on, one phrase each.
+    inputs
+        The named inputs.
+    check
+        ``check(inputs, params, size)`` raises ``InputError`` for combinations that cannot work.
+    order
+        Place in lists and in the first columns of the window.
+    """
+
+    id: str
+    title: str
+    summary: str
+    reference: str
+    params: type[Params]
+    analyze: Callable[..., Steps]
+    synthesize: Callable[..., Generator[Step, None, Output]]
+    fails_on: tuple[str, ...] = ()
+    inputs: tuple[InputSpec, ...] = (EXEMPLAR,)
+    check: Callable[..., None] | None = None
+    order: int = 100
+
+
+_METHODS: dict[str, Method] = {}
+
+
+def register(method: Method) -> Method:
+    """Add a method; a second one with the same id is a programming error."""
+    if method.id in _METHODS:
+        raise RuntimeError(f"A method with the id {method.id!r} is registered already.")
+    _METHODS[method.id] = method
+    return method
+
+
+@functools.cache
+def methods() -> Mapping[str, Method]:
+    """Return every registered method by id, in their order; imports all files of ``methods/`` once."""
+    package = importlib.import_module("texlab_core.methods")
+    for each in pkgutil.iter_modules(package.__path__):
+        if not each.name.startswith("_"):
+            importlib.import_module(f"{package.__name__}.{each.name}")
+    ordered = sorted(_METHODS.values(), key=lambda method: (method.order, method.id))
+    return MappingProxyType({method.id: method for method in ordered})
+
+
+def find_method(name: str) -> Method:
+    """Return the method with this id.
+
+    Raises
+    ------
+    ParamError
+        When there is none; the message lists the ids.
+    """
+    known = methods()
+    if name in known:
+        return known[name]
+    close = difflib.get_close_matches(str(name), known, n=1)
+    hint = f" (did you mean {close[0]}?)" if close else ""
+    raise ParamError("method", f"one of {', '.join(known)}{hint}", name)
