@@ -1,0 +1,49 @@
+"""What every dock is: a question about the scene, computed elsewhere, and the showing of its answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QWidget
+
+if TYPE_CHECKING:
+    from texlab.scene import Question, Scene
+    from texlab.theme import Theme
+
+
+class Dock(QWidget):
+    """A tab below the images.
+
+    A dock never computes and never writes the session. ``question`` says (quickly, from the scene and the dock's
+    own controls) what is to be computed in a background thread; ``present`` shows the answer. When its own controls
+    change what it asks, a dock emits ``asks``. What the user does to the session through it (take parameters,
+    choose a pixel) it emits as ``intention``: a callable that is given the controller.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    help: ClassVar[str]
+    order: ClassVar[int] = 100
+
+    asks = Signal()
+    intention = Signal(object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(f"dock-{self.name}")
+
+    def question(self, scene: Scene) -> Question | None:
+        """Return what to compute for this scene, or None when there is nothing to show."""
+        raise NotImplementedError
+
+    def present(self, answer: Any) -> None:
+        """Show what ``Question.compute`` returned."""
+        raise NotImplementedError
+
+    def present_nothing(self, reason: str) -> None:
+        """Show why there is nothing to show, in one sentence."""
+        raise NotImplementedError
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""

@@ -1,0 +1,234 @@
+"""Work in the background: the only file that knows both threads and Qt.
+
+Every :class:`Worker` is one thread with a one-slot mailbox: the newest request replaces a waiting one and stops a
+running one. Requests carry a generation number, checked in the thread and again on arrival, so that nothing stale
+is ever delivered. Every request that starts ends with exactly one of finished, failed, cancelled.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from PySide6.QtCore import QObject, Signal, Slot
+
+from texlab_core.errors import Cancelled, InputError
+
+log = logging.getLogger(__name__)
+
+PROGRESS_INTERVAL_S = 1 / 60
+
+
+class Slots:
+    """As many places as there are cores; work beyond that waits for its turn."""
+
+    def __init__(self, count: int) -> None:
+        self._free = count
+        self._changed = threading.Condition()
+
+    def acquire(self, should_stop: Callable[[], bool]) -> bool:
+        """Wait for a place; False when ``should_stop`` says so first."""
+        with self._changed:
+            while self._free == 0:
+                if should_stop():
+                    return False
+                self._changed.wait()
+            if should_stop():
+                return False
+            self._free -= 1
+            return True
+
+    def release(self) -> None:
+        """Give the place back."""
+        with self._changed:
+            self._free += 1
+            self._changed.notify_all()
+
+    def wake(self) -> None:
+        """Make everyone who waits ask ``should_stop`` again."""
+        with self._changed:
+            self._changed.notify_all()
+
+
+@dataclass(frozen=True, slots=True)
+class _Event:
+    generation: int
+    kind: Literal["started", "finished", "failed", "idle"]
+    value: Any = None
+
+
+class Task:
+    """What a request sees of the world while it runs (in the worker's thread)."""
+
+    def __init__(self, worker: Worker, generation: int) -> None:
+        self._worker = worker
+        self.generation = generation
+        self._last = 0.0
+
+    def should_stop(self) -> bool:
+        """Whether a newer request, a cancel or a close has come."""
+        return self._worker._wanted != self.generation
+
+    def due(self) -> bool:
+        """Whether enough time has passed for another progress report to be shown."""
+        return time.perf_counter() - self._last >= PROGRESS_INTERVAL_S
+
+    def progress(self, value: object) -> None:
+        """Report; the newest report replaces one that the window has not taken yet."""
+        self._last = time.perf_counter()
+        self._worker._post_progress(self.generation, value)
+
+
+Request = Callable[[Task], Any]
+
+
+class Worker(QObject):
+    """One thread with a one-slot mailbox. All signals arrive in the thread that made the worker."""
+
+    started = Signal(int)
+    progressed = Signal(object)
+    finished = Signal(object)
+    failed = Signal(str)
+    cancelled = Signal()
+    idle = Signal()
+    _event = Signal(object)
+    _progress_waits = Signal()
+
+    def __init__(self, name: str, slots: Slots | None = None, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(f"worker-{name}")
+        self._slots = slots
+        self._mail = threading.Condition()
+        self._request: Request | None = None
+        self._wanted = 0
+        self._closing = False
+        self._busy = False
+        self._progress: tuple[int, object] | None = None
+        self._event.connect(self._receive)
+        self._progress_waits.connect(self._receive_progress)
+        self._thread = threading.Thread(target=self._work, name=f"texlab-{name}", daemon=True)
+        self._thread.start()
+
+    @property
+    def generation(self) -> int:
+        """Number of the newest request."""
+        return self._wanted
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request is waiting or running."""
+        with self._mail:
+            return self._busy or self._request is not None
+
+    def submit(self, request: Request) -> int:
+        """Run ``request`` instead of whatever waits or runs; returns its generation number."""
+        with self._mail:
+            self._wanted += 1
+            self._request = request
+            self._mail.notify()
+        if self._slots is not None:
+            self._slots.wake()
+        return self._wanted
+
+    def cancel(self) -> None:
+        """Stop what runs and forget what waits."""
+        with self._mail:
+            running = self._busy or self._request is not None
+            self._request = None
+            self._wanted += 1
+        if self._slots is not None:
+            self._slots.wake()
+        if running:
+            self.cancelled.emit()
+
+    def close(self, timeout_s: float = 5.0) -> None:
+        """Stop the thread and wait for its end."""
+        with self._mail:
+            self._closing = True
+            self._request = None
+            self._wanted += 1
+            self._mail.notify()
+        if self._slots is not None:
+            self._slots.wake()
+        self._thread.join(timeout_s)
+        if self._thread.is_alive():
+            log.error("%s did not end within %.0f s.", self._thread.name, timeout_s)
+
+    # The thread's side.
+
+    def _work(self) -> None:
+        while True:
+            with self._mail:
+                while self._request is None and not self._closing:
+                    self._mail.wait()
+                if self._closing:
+                    return
+                request, self._request = self._request, None
+                generation = self._wanted
+                self._busy = True
+            assert request is not None
+            self._run_one(request, Task(self, generation))
+            del request
+            with self._mail:
+                self._busy = False
+                closing = self._closing
+            if not closing:
+                self._event.emit(_Event(generation, "idle"))
+
+    def _run_one(self, request: Request, task: Task) -> None:
+        if self._slots is not None and not self._slots.acquire(task.should_stop):
+            return
+        try:
+            self._event.emit(_Event(task.generation, "started"))
+            value = request(task)
+        except Cancelled:
+            return
+        except (InputError, OSError) as error:
+            self._event.emit(_Event(task.generation, "failed", str(error)))
+        except MemoryError:
+            self._event.emit(_Event(task.generation, "failed", "There is not enough memory for this size."))
+        except Exception as error:
+            log.exception("A background task failed.")
+            text = f"{type(error).__name__}: {error}. The log has the details."
+            self._event.emit(_Event(task.generation, "failed", text))
+        else:
+            self._event.emit(_Event(task.generation, "finished", value))
+        finally:
+            if self._slots is not None:
+                self._slots.release()
+
+    def _post_progress(self, generation: int, value: object) -> None:
+        with self._mail:
+            pending = self._progress is not None
+            self._progress = (generation, value)
+        if not pending:
+            self._progress_waits.emit()
+
+    # The window's side.
+
+    @Slot(object)
+    def _receive(self, event: _Event) -> None:
+        if event.kind == "idle":
+            if not self.busy:
+                self.idle.emit()
+            return
+        if event.generation != self._wanted or self._closing:
+            return
+        if event.kind == "started":
+            self.started.emit(event.generation)
+        elif event.kind == "finished":
+            self._receive_progress()
+            self.finished.emit(event.value)
+        else:
+            self.failed.emit(event.value)
+
+    @Slot()
+    def _receive_progress(self) -> None:
+        with self._mail:
+            waiting, self._progress = self._progress, None
+        if waiting is not None and waiting[0] == self._wanted and not self._closing:
+            self.progressed.emit(waiting[1])

@@ -1,0 +1,106 @@
+"""The frozen picture of session and results that the docks look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from texlab.theme import Theme
+    from texlab_core.inputs import ImageInput
+    from texlab_core.params import Params
+    from texlab_core.steps import FloatImage, Result
+
+Status = Literal["idle", "waiting", "running", "finished", "cancelled", "failed"]
+Picture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One kept stage of a run ("iteration 3"), as (H, W, 3) uint8."""
+
+    name: str
+    picture: Picture
+
+
+@dataclass(frozen=True, eq=False)
+class ColumnScene:
+    """What a column shows.
+
+    Parameters
+    ----------
+    id, method, title, params
+        What the user chose.
+    status
+        idle, waiting (for a core), running, finished, cancelled or failed.
+    message
+        One line for people: the stage, or why it failed.
+    fraction
+        Progress from 0 to 1 of the phase under way.
+    picture
+        What is painted, (H, W, 3) uint8.
+    image
+        The same as values, (H, W, C) float32 in [0, 1]; a preview while the run goes on.
+    result
+        The finished result, or None while there is none for the present parameters.
+    draft
+        The picture is a quick one, made while a control is dragged.
+    frames
+        Stages kept for the scrubber, in order.
+    metrics
+        The newest numbers of the run.
+    elapsed_s
+        Wall time of the run.
+    """
+
+    id: int
+    method: str
+    title: str
+    params: Params
+    status: Status = "idle"
+    message: str = ""
+    fraction: float = 0.0
+    picture: Picture | None = None
+    image: FloatImage | None = None
+    result: Result | None = None
+    draft: bool = False
+    frames: tuple[Frame, ...] = ()
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    elapsed_s: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything that docks may show."""
+
+    theme: Theme
+    exemplar: ImageInput | None = None
+    columns: tuple[ColumnScene, ...] = ()
+    selected_id: int = 0
+
+    @property
+    def selected(self) -> ColumnScene | None:
+        """The chosen column."""
+        return next((column for column in self.columns if column.id == self.selected_id), None)
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What a dock wants to know.
+
+    Parameters
+    ----------
+    key
+        Hashable; while it stays equal nothing is computed again.
+    compute
+        Called in a background thread with a ``should_stop`` function; its value goes to ``Dock.present``. It must
+        not touch any widget.
+    """
+
+    key: tuple[Any, ...]
+    compute: Callable[[Callable[[], bool]], Any]

@@ -1,0 +1,202 @@
+"""Palette, fonts, colour maps and the configuration of pyqtgraph: the one place for looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtGui import QColor, QGuiApplication, QPalette
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from PySide6.QtWidgets import QApplication
+
+ThemeName = Literal["auto", "light", "dark"]
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours by role, as ``#rrggbb``; the plot colours can be told apart by the colour-blind."""
+
+    name: Literal["light", "dark"]
+    window: str
+    base: str
+    raised: str
+    text: str
+    muted: str
+    border: str
+    accent: str
+    accent_text: str
+    exemplar: str
+    result: str
+    third: str
+    good: str
+    warning: str
+    error: str
+    canvas: str
+    grid: str
+
+
+LIGHT = Theme(
+    name="light",
+    window="#f3f3f1",
+    base="#ffffff",
+    raised="#e9e9e6",
+    text="#1c1c1a",
+    muted="#63635e",
+    border="#d0d0cb",
+    accent="#0b62b0",
+    accent_text="#ffffff",
+    exemplar="#0072b2",
+    result="#c85200",
+    third="#007a5a",
+    good="#1d7a3e",
+    warning="#8a5a00",
+    error="#b3261e",
+    canvas="#dededa",
+    grid="#b8b8b2",
+)
+DARK = Theme(
+    name="dark",
+    window="#1f2022",
+    base="#17181a",
+    raised="#2a2c2f",
+    text="#e8e8e4",
+    muted="#a3a39c",
+    border="#3a3c40",
+    accent="#5aa9f0",
+    accent_text="#0c0d0e",
+    exemplar="#56b4e9",
+    result="#f0a035",
+    third="#35c79a",
+    good="#6ccf8e",
+    warning="#f0b95a",
+    error="#ff8a80",
+    canvas="#121314",
+    grid="#55585e",
+)
+
+DIVERGING = ((33, 102, 172), (146, 197, 222), (247, 247, 247), (244, 165, 130), (178, 24, 43))
+SEQUENTIAL = ((13, 8, 80), (84, 2, 163), (156, 23, 158), (219, 92, 104), (248, 149, 64), (240, 249, 33))
+
+
+def lookup_table(stops: tuple[tuple[int, int, int], ...], size: int = 256) -> NDArray[np.uint8]:
+    """Return ``size`` colours interpolated between the stops, (size, 3) uint8."""
+    places = np.linspace(0, len(stops) - 1, size)
+    table = np.stack([np.interp(places, range(len(stops)), channel) for channel in zip(*stops, strict=True)], 1)
+    return np.round(table).astype(np.uint8)
+
+
+class ThemeSource(QObject):
+    """Holds the theme in force and tells when it changes; ``auto`` follows the system."""
+
+    changed = Signal(object)
+
+    def __init__(self, choice: ThemeName = "auto", parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._choice = choice
+        self._theme = self._resolve()
+        hints = QGuiApplication.styleHints()
+        hints.colorSchemeChanged.connect(self._system_changed)
+
+    @property
+    def theme(self) -> Theme:
+        """The theme in force."""
+        return self._theme
+
+    @property
+    def choice(self) -> ThemeName:
+        """What the user chose."""
+        return self._choice
+
+    def choose(self, choice: ThemeName) -> None:
+        """Take another theme."""
+        self._choice = choice
+        self._update()
+
+    def _system_changed(self) -> None:
+        self._update()
+
+    def _update(self) -> None:
+        theme = self._resolve()
+        if theme is not self._theme:
+            self._theme = theme
+            self.changed.emit(theme)
+
+    def _resolve(self) -> Theme:
+        if self._choice == "auto":
+            dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
+            return DARK if dark else LIGHT
+        return DARK if self._choice == "dark" else LIGHT
+
+
+def palette(theme: Theme) -> QPalette:
+    """Return the theme as a Qt palette."""
+    made = QPalette()
+    roles = QPalette.ColorRole
+    for role, colour in (
+        (roles.Window, theme.window),
+        (roles.WindowText, theme.text),
+        (roles.Base, theme.base),
+        (roles.AlternateBase, theme.raised),
+        (roles.ToolTipBase, theme.raised),
+        (roles.ToolTipText, theme.text),
+        (roles.Text, theme.text),
+        (roles.PlaceholderText, theme.muted),
+        (roles.Button, theme.raised),
+        (roles.ButtonText, theme.text),
+        (roles.BrightText, theme.error),
+        (roles.Link, theme.accent),
+        (roles.Highlight, theme.accent),
+        (roles.HighlightedText, theme.accent_text),
+        (roles.Accent, theme.accent),
+        (roles.Light, theme.base),
+        (roles.Midlight, theme.raised),
+        (roles.Mid, theme.border),
+        (roles.Dark, theme.border),
+        (roles.Shadow, theme.canvas),
+    ):
+        made.setColor(role, QColor(colour))
+    for role in (roles.WindowText, roles.Text, roles.ButtonText):
+        made.setColor(QPalette.ColorGroup.Disabled, role, QColor(theme.grid))
+    return made
+
+
+def stylesheet(theme: Theme) -> str:
+    """Return the few rules that a palette cannot say."""
+    return f"""
+    QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border}; padding: 4px; }}
+    QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 4px 6px; }}
+    QStatusBar {{ border-top: 1px solid {theme.border}; }}
+    QStatusBar::item {{ border: none; }}
+    QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
+    QFrame#column {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
+    QFrame#column[chosen="true"] {{ border: 2px solid {theme.accent}; }}
+    QFrame#column[failed="true"] {{ border-color: {theme.error}; }}
+    QLabel[role="muted"] {{ color: {theme.muted}; }}
+    QLabel[role="error"] {{ color: {theme.error}; }}
+    QLabel[role="warning"] {{ color: {theme.warning}; }}
+    QLabel[role="heading"] {{ font-weight: 600; }}
+    QListWidget, QTreeWidget, QScrollArea {{ border: none; }}
+    QProgressBar {{ border: none; background: {theme.raised}; max-height: 4px; min-height: 4px; border-radius: 2px; }}
+    QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
+    QSplitter::handle {{ background: {theme.window}; }}
+    QSplitter::handle:hover {{ background: {theme.accent}; }}
+    """
+
+
+def apply_theme(application: QApplication, theme: Theme) -> None:
+    """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
+    application.setStyle("Fusion")
+    application.setPalette(palette(theme))
+    application.setStyleSheet(stylesheet(theme))
+
+
+def configure_pyqtgraph() -> Any:
+    """Import and configure pyqtgraph; returns the module."""
+    import pyqtgraph as pg
+
+    pg.setConfigOptions(imageAxisOrder="row-major", antialias=False, useOpenGL=False)
+    return pg
