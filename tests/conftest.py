@@ -1,0 +1,123 @@
+"""What holds for every test: nothing outside the test's folder is touched, and nothing is left running."""
+
+from __future__ import annotations
+
+import gc
+import os
+import random
+import threading
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from weakref import WeakSet
+
+PLATFORM = os.environ.get("TEXLAB_TEST_PLATFORM", "offscreen")
+os.environ["QT_QPA_PLATFORM"] = PLATFORM
+os.environ["QT_LOGGING_RULES"] = "qt.qpa.*=false"
+os.environ.setdefault("PYTHONHASHSEED", "0")
+
+pytest_plugins = ["tests.coverage_floor"]
+PATIENCE_S = 2.0
+
+
+@pytest.fixture(autouse=True)
+def texlab_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Keep settings, logs and presets of a test inside its own folder."""
+    home = tmp_path / "texlab-home"
+    monkeypatch.setenv("TEXLAB_HOME", str(home))
+    return home
+
+
+@pytest.fixture(autouse=True)
+def no_global_random() -> Iterator[None]:
+    """Fail a test whose code draws from the global generators."""
+    import numpy as np
+
+    random.seed(20240229)
+    np.random.seed(20240229)  # noqa: NPY002
+    before = (random.getstate(), str(np.random.get_state()))  # noqa: NPY002
+    yield
+    if (random.getstate(), str(np.random.get_state())) != before:  # noqa: NPY002
+        pytest.fail("The test (or what it called) used a global random generator.")
+
+
+@pytest.fixture(autouse=True)
+def no_leaked_threads() -> Iterator[None]:
+    """Fail a test that leaves a thread behind."""
+    before = set(threading.enumerate())
+    yield
+
+    def left() -> list[str]:
+        return [each.name for each in threading.enumerate() if each not in before and each.is_alive()]
+
+    if _persists(left):
+        pytest.fail(f"Threads left running: {', '.join(left())}.")
+
+
+@pytest.fixture(autouse=True)
+def no_leaked_qt(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> Iterator[None]:
+    """Fail a test that leaves a top-level widget or a running timer behind."""
+    if "gui" not in request.path.parts:
+        yield
+        return
+    from PySide6.QtWidgets import QApplication
+
+    before = {id(widget) for widget in QApplication.topLevelWidgets()}
+    started = _watch_timers(monkeypatch)
+    yield
+
+    def left() -> list[str]:
+        _delete_deferred()
+        widgets = [widget for widget in QApplication.topLevelWidgets() if id(widget) not in before]
+        timers = [timer for timer in list(started) if _is_running(timer)]
+        return [f"{type(each).__name__} {each.objectName()!r}" for each in [*widgets, *timers]]
+
+    if _persists(left):
+        pytest.fail(f"Qt objects left behind: {', '.join(left())}.")
+
+
+def _persists(left: Callable[[], list[str]]) -> bool:
+    """Return whether something is left even after what is on its way out had time to go."""
+    if not left():
+        return False
+    gc.collect()
+    deadline = time.monotonic() + PATIENCE_S
+    while left():
+        if time.monotonic() > deadline:
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def _delete_deferred() -> None:
+    from PySide6.QtCore import QCoreApplication, QEvent
+
+    if QCoreApplication.instance() is not None:
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+def _watch_timers(monkeypatch: pytest.MonkeyPatch) -> WeakSet[object]:
+    from weakref import WeakSet
+
+    from PySide6.QtCore import QTimer
+
+    started: WeakSet[object] = WeakSet()
+    start = QTimer.start
+
+    def recorded(timer: QTimer, *args: object) -> None:
+        started.add(timer)
+        start(timer, *args)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(QTimer, "start", recorded)
+    return started
+
+
+def _is_running(timer: object) -> bool:
+    import shiboken6
+
+    return shiboken6.isValid(timer) and timer.isActive()  # type: ignore[attr-defined]

@@ -1,0 +1,77 @@
+"""Example-based texture synthesis: arrays in, arrays out, no Qt.
+
+>>> import texlab_core
+>>> result = texlab_core.synthesize("gallery:structured-pebbles", size=(256, 256), seed=1)  # doctest: +SKIP
+
+Names are imported when they are first used, so that importing the package costs next to nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
+    from texlab_core.inputs import ArraysInput, Crop, DataInput, ImageInput
+    from texlab_core.params import Knob, Params, describe
+    from texlab_core.registry import InputSpec, Method, find_method, register
+    from texlab_core.run import AnalysisCache, Job, Streams
+    from texlab_core.steps import Curve, Map, Output, Result, Step
+
+_HOMES = {
+    "api": ("available_methods", "synthesize"),
+    "errors": ("Cancelled", "ImageError", "InputError", "ParamError", "RecipeError"),
+    "images": ("as_exemplar",),
+    "inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput"),
+    "params": ("Knob", "Params", "describe"),
+    "record": ("read_recipe", "save_result"),
+    "registry": ("InputSpec", "Method", "find_method", "register"),
+    "run": ("AnalysisCache", "Job", "Streams"),
+    "steps": ("Curve", "Map", "Output", "Result", "Step"),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "AnalysisCache",
+    "ArraysInput",
+    "Cancelled",
+    "Crop",
+    "Curve",
+    "DataInput",
+    "ImageError",
+    "ImageInput",
+    "InputError",
+    "InputSpec",
+    "Job",
+    "Knob",
+    "Map",
+    "Method",
+    "Output",
+    "ParamError",
+    "Params",
+    "RecipeError",
+    "Result",
+    "Step",
+    "Streams",
+    "as_exemplar",
+    "available_methods",
+    "describe",
+    "find_method",
+    "read_recipe",
+    "register",
+    "save_result",
+    "synthesize",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
