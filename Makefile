@@ -1,0 +1,46 @@
+# make run opens the explorer, make test checks everything; both install what is missing first.
+
+PYTHON ?= python3
+BIN := .venv/bin
+PY := $(BIN)/python
+
+.PHONY: run test lint fmt bench wheel clean distclean
+.DEFAULT_GOAL := run
+
+run: .venv/.ready-run
+	@$(PY) tools/run_explorer.py
+
+# The last pytest run is the whole suite, so that its summary is the last line.
+test: lint
+	@if command -v Xvfb >/dev/null; then echo "== window tests under Xvfb"; \
+		TEXLAB_TEST_PLATFORM=xcb $(PY) -m pytest tests/gui -q -p no:cacheprovider; fi
+	@echo "== all tests, off screen"
+	@$(PY) -m pytest -q --no-xvfb --cov --cov-report=term:skip-covered --coverage-floors
+
+lint: .venv/.ready-test
+	@echo "== ruff, mypy, import contracts"
+	@$(PY) -m ruff check .
+	@$(PY) -m ruff format --check .
+	@$(PY) -m mypy
+	@$(BIN)/lint-imports
+
+fmt: .venv/.ready-test
+	@$(PY) -m ruff check --fix .
+	@$(PY) -m ruff format .
+
+bench: .venv/.ready-bench
+	@$(PY) -m pytest tests/benchmarks -q -s --no-xvfb -m benchmark -o python_files='bench_*.py'
+
+wheel: .venv/.ready-run
+	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist
+	@ls dist/*.whl
+
+.venv/.ready-%: pyproject.toml tools/setup_env.py
+	@$(PYTHON) tools/setup_env.py $*
+
+clean:
+	rm -rf build dist .coverage .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	find texlab texlab_core tests tools -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean
+	rm -rf .venv
