@@ -1,0 +1,140 @@
+"""Frequency responses of the steerable pyramid, computed once and kept.
+
+All radii are absolute frequencies in radians per pixel of the full image. A raised cosine in log2 of the radius
+falls from 1 at half its cut to 0 at the cut; the first one is cut at pi, the one of level l at pi / 2^(l + 1).
+Since each low-pass is 1 wherever the next one is not 0, a band's response is a product of two of them.
+
+Reference: Heeger and Bergen 1995, section 2.1, figure 1; Simoncelli and Freeman 1995; Karasaridis and Simoncelli
+1996.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Size = tuple[int, int]
+Mask = NDArray[Any]
+
+
+def level_size(size: Size, level: int) -> Size:
+    """Return height and width of the bands at a level: ceil(N / 2^level)."""
+    return -(-size[0] >> level), -(-size[1] >> level)
+
+
+def spectrum_size(size: Size) -> Size:
+    """Return the shape of the half spectrum of a real image."""
+    return size[0], size[1] // 2 + 1
+
+
+class ArrayCache:
+    """Read-only arrays by key, the most recently used ones, bounded in bytes; safe to share between threads."""
+
+    def __init__(self, capacity: int) -> None:
+        self._capacity = capacity
+        self._arrays: OrderedDict[tuple[object, ...], Mask] = OrderedDict()
+        self._lock = threading.Lock()
+        self._bytes = 0
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held at the moment."""
+        return self._bytes
+
+    def get(self, key: tuple[object, ...], make: Callable[[], Mask]) -> Mask:
+        """Return the array of this key, making it when it is not there."""
+        with self._lock:
+            if key in self._arrays:
+                self._arrays.move_to_end(key)
+                return self._arrays[key]
+        # Made outside the lock: two threads may do the same work, but none waits for another's.
+        made = make()
+        made.flags.writeable = False
+        with self._lock:
+            kept = self._arrays.setdefault(key, made)
+            self._bytes += made.nbytes if kept is made else 0
+            while self._bytes > self._capacity and len(self._arrays) > 1:
+                self._bytes -= self._arrays.popitem(last=False)[1].nbytes
+        return kept
+
+
+_CACHE = ArrayCache(256 * 2**20)
+
+
+def highpass(size: Size, dtype: np.dtype[Any]) -> Mask:
+    """Return the response of the high-pass residual on the half spectrum of an image of this size."""
+    return _CACHE.get(("highpass", size, dtype.str), lambda: _rise(_radius(size, size), math.pi).astype(dtype))
+
+
+def lowpass(size: Size, levels: int, dtype: np.dtype[Any]) -> Mask:
+    """Return the response of the low-pass residual below ``levels`` levels, on its cropped half spectrum."""
+    crop = level_size(size, levels)
+
+    def make() -> Mask:
+        return _fall(_radius(size, crop), math.pi / 2**levels).astype(dtype)
+
+    return _CACHE.get(("lowpass", size, levels, dtype.str), make)
+
+
+def oriented(size: Size, level: int, orientations: int, index: int, dtype: np.dtype[Any]) -> Mask:
+    """Return the response of one oriented band without its factor (-i)^(K-1), on its cropped half spectrum."""
+
+    def make() -> Mask:
+        return _oriented(size, level, orientations, index).astype(dtype)
+
+    return _CACHE.get(("oriented", size, level, orientations, index, dtype.str), make)
+
+
+def _oriented(size: Size, level: int, orientations: int, index: int) -> Mask:
+    crop = level_size(size, level)
+    radius = _radius(size, crop)
+    cut = math.pi / 2**level
+    radial = _fall(radius, cut) * _rise(radius, cut / 2)
+    rows, columns = _frequencies(size, crop)
+    phi = math.pi * index / orientations
+    # cos(theta - phi) without angles, so that opposite frequencies get exactly opposite values.
+    cosine = (columns * math.cos(phi) + rows * math.sin(phi)) / np.where(radius > 0, radius, 1)
+    power = orientations - 1
+    alpha = 2**power * math.factorial(power) / math.sqrt(orientations * math.factorial(2 * power))
+    response: Mask = alpha * radial * cosine**power
+    return response
+
+
+def _frequencies(size: Size, crop: Size) -> tuple[Mask, Mask]:
+    """Return row (h, 1) and column (1, w // 2 + 1) frequencies of the cropped half spectrum."""
+    height, width = crop
+    rows = np.fft.ifftshift(np.arange(-(height // 2), height - height // 2))[:, None]
+    columns = np.arange(width // 2 + 1)[None, :]
+    return rows * (2 * np.pi / size[0]), columns * (2 * np.pi / size[1])
+
+
+def _radius(size: Size, crop: Size) -> Mask:
+    rows, columns = _frequencies(size, crop)
+    radius: Mask = np.hypot(rows, columns)
+    return radius
+
+
+def _octaves(radius: Mask, cut: float) -> Mask:
+    """Return the phase of the raised cosine: 0 up to half the cut, pi / 2 from the cut on."""
+    with np.errstate(divide="ignore"):
+        phase: Mask = np.pi / 2 * np.clip(1 + np.log2(radius / cut), 0, 1)
+    return phase
+
+
+def _fall(radius: Mask, cut: float) -> Mask:
+    # Exactly 0 from the cut on: the crop to ceil(N / 2^l) then loses nothing.
+    fall: Mask = np.where(radius < cut, np.cos(_octaves(radius, cut)), 0)
+    return fall
+
+
+def _rise(radius: Mask, cut: float) -> Mask:
+    rise: Mask = np.where(radius < cut, np.sin(_octaves(radius, cut)), 1)
+    return rise
