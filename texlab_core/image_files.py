@@ -1,0 +1,209 @@
+"""Read image files into arrays of stored values: sizes are checked from the header, before anything is decoded."""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+
+from texlab_core.errors import ImageError
+from texlab_core.run import MAX_PIXELS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+READABLE = "PNG, JPEG, TIFF, WebP, BMP, PGM or PPM"
+READABLE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pbm", ".pnm")
+_ORIENTATION = 0x0112
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Decoded:
+    """An image as its file has it, upright and in sRGB.
+
+    Parameters
+    ----------
+    values
+        (H, W, C), C = 1 gray, 2 gray and alpha, 3 RGB, 4 RGB and alpha; unsigned integers or floats.
+    peak
+        The integer that means 1; None for floats and signed integers, whose range means nothing by itself.
+    notes
+        What was converted, one sentence each.
+    premultiplied
+        Colours are multiplied by alpha already.
+    """
+
+    values: NDArray[Any]
+    peak: int | None
+    notes: tuple[str, ...] = ()
+    premultiplied: bool = False
+
+
+def read_image(source: Path | bytes, name: str) -> Decoded:
+    """Read an image file.
+
+    Parameters
+    ----------
+    source
+        Path of the file, or its bytes.
+    name
+        How messages call it.
+
+    Raises
+    ------
+    ImageError
+        When it is missing, no regular file, not an image of a known format, damaged, empty, or larger than 64
+        megapixels.
+    """
+    if isinstance(source, bytes):
+        return _decode(io.BytesIO(source), name)
+    try:
+        mode = source.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise ImageError(f"{name}: is a folder, not an image.")
+        if not stat.S_ISREG(mode):
+            raise ImageError(f"{name}: is not a regular file.")
+        with open(source, "rb") as file:
+            return _decode(file, name)
+    except FileNotFoundError:
+        raise ImageError(f"{name}: there is no such file.") from None
+    except ImageError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ImageError(f"{name}: cannot be opened ({reason}).") from error
+
+
+def check_pixels(width: int, height: int, name: str) -> None:
+    """Refuse what is empty or larger than 64 megapixels."""
+    if width < 1 or height < 1:
+        raise ImageError(f"{name}: the image is empty ({width} x {height} pixels).")
+    if width * height > MAX_PIXELS:
+        raise ImageError(
+            f"{name}: the image is too large; at most {MAX_PIXELS / 1e6:.0f} megapixels are read, "
+            f"and it has {width} x {height} = {width * height / 1e6:.0f}."
+        )
+
+
+def _decode(file: BinaryIO, name: str) -> Decoded:
+    head = file.read(16)
+    file.seek(0)
+    if not head:
+        raise ImageError(f"{name}: the file is empty.")
+    reader = _reader(head)
+    if reader is None:
+        raise ImageError(f"{name}: is not an image that TexLab reads ({READABLE}).")
+    try:
+        return reader(file, name)
+    except ImageError:
+        raise
+    except MemoryError as error:
+        raise ImageError(f"{name}: there is not enough memory to read it.") from error
+    except Exception as error:
+        # Decoders raise all kinds of errors on damaged files; none of them is the program's fault.
+        reason = " ".join(str(error).split()).rstrip(".")[:120] or type(error).__name__
+        raise ImageError(f"{name}: the image is truncated or damaged ({reason}).") from error
+
+
+def _reader(head: bytes) -> Callable[[BinaryIO, str], Decoded] | None:
+    if head.startswith((b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")):
+        from texlab_core.tiff_files import read_tiff
+
+        return read_tiff
+    if head[:1] == b"P" and head[1:2] in b"123456" and head[2:3] in b" \t\r\n#":
+        from texlab_core.pnm_files import read_pnm
+
+        return read_pnm
+    known = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"BM")
+    if head.startswith(known) or (head[:4] == b"RIFF" and head[8:12] == b"WEBP"):
+        return _read_with_pillow
+    return None
+
+
+def _read_with_pillow(file: BinaryIO, name: str) -> Decoded:
+    image = _open(file)
+    width, height = image.size
+    check_pixels(width, height, name)
+    notes: list[str] = []
+    if (frames := getattr(image, "n_frames", 1)) > 1:
+        notes.append(f"The file has {frames} frames; the first one was used.")
+    if image.format == "PNG" and _png_depth(file) == 16:
+        # Pillow keeps 8 of the 16 bits of colour and alpha.
+        import imagecodecs
+
+        file.seek(0)
+        values = imagecodecs.png_decode(file.read())
+    else:
+        values = np.asarray(_plain(image))
+    values = values.reshape(values.shape[0], values.shape[1], -1)
+    if image.mode == "CMYK" or image.info.get("icc_profile"):
+        from texlab_core.colour_profiles import to_srgb
+
+        values = to_srgb(values, image.info.get("icc_profile"), cmyk=image.mode == "CMYK", notes=notes)
+    values = oriented(values, _orientation(image), notes)
+    return Decoded(values, int(np.iinfo(values.dtype).max), tuple(notes))
+
+
+def _open(file: BinaryIO) -> Any:
+    """Read the header; the plugins are called directly because ``Image.open`` warns on its own, global, limit."""
+    from PIL import BmpImagePlugin, JpegImagePlugin, PngImagePlugin, WebPImagePlugin
+
+    head = file.read(4)
+    file.seek(0)
+    if head.startswith(b"\x89PNG"):
+        return PngImagePlugin.PngImageFile(file)
+    if head.startswith(b"RIFF"):
+        return WebPImagePlugin.WebPImageFile(file)
+    if head.startswith(b"BM"):
+        return BmpImagePlugin.BmpImageFile(file)
+    return JpegImagePlugin.JpegImageFile(file)
+
+
+def _png_depth(file: BinaryIO) -> int:
+    file.seek(24)
+    return int(struct.unpack("B", file.read(1))[0])
+
+
+def _plain(image: Any) -> Any:
+    """Return the image with 8 bits for each of gray, gray and alpha, RGB, RGBA or CMYK."""
+    transparent = "transparency" in image.info
+    image.load()
+    if image.mode in ("L", "1"):
+        return image.convert("LA" if transparent else "L")
+    if image.mode in ("LA", "RGBA", "CMYK"):
+        return image
+    return image.convert("RGBA" if transparent or image.mode == "PA" else "RGB")
+
+
+def _orientation(image: Any) -> int:
+    try:
+        return int(image.getexif().get(_ORIENTATION, 1))
+    except Exception:
+        # Damaged metadata is no reason to refuse a picture.
+        return 1
+
+
+def oriented(values: NDArray[Any], orientation: int, notes: list[str]) -> NDArray[Any]:
+    """Turn an image upright: TIFF 6.0, tag 274; values that the standard does not know change nothing."""
+    if orientation not in range(2, 9):
+        return values
+    notes.append(f"The image was turned upright (EXIF orientation {orientation}).")
+    if orientation >= 5:
+        values = values.swapaxes(0, 1)
+    # Rows of the file start at the visual bottom in 3, 4, 7, 8 and at the visual right in 2, 3, 6, 7.
+    rows = slice(None, None, -1) if orientation in (3, 4, 7, 8) else slice(None)
+    columns = slice(None, None, -1) if orientation in (2, 3, 6, 7) else slice(None)
+    return values[rows, columns]
+
+
+def display_name(path: str | os.PathLike[str]) -> str:
+    """Return the last part of a path, on one line."""
+    return " ".join(os.path.basename(os.fspath(path)).split()) or os.fspath(path)
