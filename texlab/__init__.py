@@ -1,0 +1,1 @@
+"""The TexLab application: window and command line."""

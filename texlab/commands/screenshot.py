@@ -1,0 +1,40 @@
+"""``texlab screenshot``: a picture of the real window, drawn off screen."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from texlab.commands._options import output_file, parse_size
+from texlab.commands.gui import require_qt
+
+if TYPE_CHECKING:
+    import argparse
+
+    from texlab.cli import Parser
+
+HELP = "Save a picture of the window, drawn off screen after its columns have finished."
+ORDER = 60
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("--out", required=True, metavar="WINDOW.png", help="PNG file to write")
+    parser.add_argument("--size", default="1280x800", metavar="WxH", help="size of the window (default 1280x800)")
+    parser.add_argument("--theme", choices=("dark", "light"), default="dark", help="default dark")
+    parser.add_argument("--gallery", metavar="NAME", help="texture of the gallery to show")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Draw and save the window."""
+    out = output_file(args.out, (".png",))
+    height, width = parse_size(args.size)
+    if args.gallery is not None:
+        from texlab_core.gallery import find_entry
+
+        args.gallery = find_entry(args.gallery).name
+    require_qt()
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    from texlab.app import screenshot
+
+    return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery)
