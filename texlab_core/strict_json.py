@@ -140,7 +140,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
         repeated = next(key for key in keys if keys.count(key) > 1)
-        raise _Refused(f"has the key {_shorten(repeated)} twice in one object")
+        raise _Refused(f"has the key {shorten(repeated)} twice in one object")
     return found
 
 
@@ -151,18 +151,19 @@ def _no_constant(name: str) -> NoReturn:
 def _finite(digits: str) -> float:
     value = float(digits) if len(digits) <= _MAX_DIGITS else math.inf
     if not math.isfinite(value):
-        raise _Refused(f"holds the number {_shorten(digits)}, which is too large or too long")
+        raise _Refused(f"holds the number {shorten(digits)}, which is too large or too long")
     return value
 
 
 def _whole(digits: str) -> int:
     if len(digits) > _MAX_DIGITS:
-        raise _Refused(f"holds the number {_shorten(digits)}, which is too large or too long")
+        raise _Refused(f"holds the number {shorten(digits)}, which is too large or too long")
     return int(digits)
 
 
-def _shorten(text: str) -> str:
-    shown = repr(text)
+def shorten(given: object) -> str:
+    """Return a value as a message shows it, at most 40 characters."""
+    shown = repr(given)
     return shown if len(shown) <= 40 else shown[:37] + "..."
 
 
