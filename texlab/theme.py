@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from PySide6.QtWidgets import QApplication
 
 ThemeName = Literal["auto", "light", "dark"]
@@ -77,16 +75,6 @@ DARK = Theme(
     canvas="#121314",
     grid="#55585e",
 )
-
-DIVERGING = ((33, 102, 172), (146, 197, 222), (247, 247, 247), (244, 165, 130), (178, 24, 43))
-SEQUENTIAL = ((13, 8, 80), (84, 2, 163), (156, 23, 158), (219, 92, 104), (248, 149, 64), (240, 249, 33))
-
-
-def lookup_table(stops: tuple[tuple[int, int, int], ...], size: int = 256) -> NDArray[np.uint8]:
-    """Return ``size`` colours interpolated between the stops, (size, 3) uint8."""
-    places = np.linspace(0, len(stops) - 1, size)
-    table = np.stack([np.interp(places, range(len(stops)), channel) for channel in zip(*stops, strict=True)], 1)
-    return np.round(table).astype(np.uint8)
 
 
 class ThemeSource(QObject):

@@ -1,0 +1,108 @@
+"""Colours of maps: places on a bar, keys, labels."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from texlab import colouring
+from texlab.colouring import Scale, colour_map
+from texlab_core.steps import Map
+
+
+def test_diverging_is_white_at_zero_and_symmetric():
+    colours = colouring.diverging(np.array([[-2.0, -1.0, 0.0, 1.0, 2.0]], np.float32), 1.0)[0].astype(int)
+    assert colours.shape == (5, 3)
+    assert np.all(np.abs(colours[2] - 247) <= 1)
+    assert tuple(colours[0]) == tuple(colours[1]) == (33, 102, 172)
+    assert tuple(colours[3]) == tuple(colours[4]) == (178, 24, 43)
+
+
+def test_gray_spans_black_to_white():
+    assert colouring.gray(np.array([-1.0, 0.0, 0.5, 1.0, 9.0], np.float32))[:, 0].tolist() == [0, 0, 128, 255, 255]
+
+
+def test_log_scale_inverts_itself():
+    scale = Scale(0, 999, "log")
+    places = scale.place([0, 9, 99, 999])
+    assert places == pytest.approx([0, 1 / 3, 2 / 3, 1], abs=1e-6)
+    assert [scale.value(float(place)) for place in places] == pytest.approx([0, 9, 99, 999], rel=1e-4, abs=1e-4)
+
+
+@pytest.mark.parametrize("data", [np.zeros((3, 4)), np.full((3, 4), 7.0)])
+def test_a_constant_map_has_one_colour(data):
+    for kind in ("count", "scalar"):
+        picture = colour_map(Map(data.astype(np.float32), kind, "constant"))
+        assert picture.shape == (3, 4, 3)
+        assert picture.dtype == np.uint8
+        assert len(np.unique(picture.reshape(-1, 3), axis=0)) == 1
+
+
+def test_unknown_scalars_are_gray():
+    data = np.array([[0.0, np.nan], [1.0, np.inf]], np.float32)
+    picture = colour_map(Map(data, "scalar", "error"))
+    assert tuple(picture[0, 1]) == colouring.NOTHING
+    assert tuple(picture[0, 0]) != tuple(picture[1, 0])
+
+
+def test_every_scalar_unknown():
+    picture = colour_map(Map(np.full((2, 2), np.nan, np.float32), "scalar", "error"))
+    assert np.all(picture == colouring.NOTHING)
+
+
+def test_identity_source_map_shows_the_key():
+    rows, columns = np.mgrid[:40, :60]
+    picture = colour_map(Map(np.stack([rows, columns], -1).astype(np.int32), "source", "source"), (40, 60))
+    assert np.array_equal(picture, colouring.source_key(40, 60))
+
+
+def test_source_hue_is_the_angle_and_the_middle_is_white():
+    key = colouring.source_key(101, 101).astype(int)
+    assert key[50, 50].min() >= 253
+    right, left = key[50, 100], key[50, 0]
+    assert right.argmax() == 0
+    assert right[1:].max() < 10
+    assert left.argmin() == 0
+    # Opposite places have opposite hues: the channels add up to white.
+    assert np.all(np.abs(key[20, 30] + key[80, 70] - key[20, 30].max() - key[80, 70].min()) <= 2)
+
+
+def test_pixels_without_a_source_are_gray():
+    source = np.array([[[-1, -1], [3, 4]]], np.int32)
+    picture = colour_map(Map(source, "source", "source"), (8, 8))
+    assert tuple(picture[0, 0]) == colouring.NOTHING
+    assert tuple(picture[0, 1]) != colouring.NOTHING
+
+
+def test_large_sources_use_a_small_key():
+    source = np.array([[[0, 0], [4999, 7999]]], np.int32)
+    picture = colour_map(Map(source, "source", "source"), (5000, 8000))
+    key = colouring.source_key(256, 256)
+    assert np.array_equal(picture[0], [key[0, 0], key[-1, -1]])
+
+
+def test_labels_get_colours_of_their_own():
+    labels = np.arange(60, dtype=np.int32).reshape(6, 10)
+    picture = colour_map(Map(labels, "label", "regions"))
+    assert tuple(picture[0, 0]) == colouring.NOTHING
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) == 60
+    table = colouring.label_table(60).astype(int)
+    assert np.abs(np.diff(table[1:], axis=0)).max(1).min() > 40
+
+
+def test_label_sizes_are_sorted_and_leave_out_zero():
+    labels = np.array([[0, 0, 0, 2], [2, 2, 1, 5]], np.int32)
+    assert colouring.label_sizes(labels) == [(2, 3), (1, 1), (5, 1)]
+    assert colouring.label_sizes(np.zeros((2, 2), np.int32)) == []
+
+
+def test_edges_are_darkened():
+    labels = np.array([[1, 1, 2, 2]], np.int32)
+    picture = np.full((1, 4, 3), 90, np.uint8)
+    assert colouring.mark_edges(picture, labels)[0, :, 0].tolist() == [90, 30, 90, 90]
+
+
+def test_needs_no_qt():
+    code = "import sys, texlab.colouring; sys.exit(any('PySide6' in name for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
