@@ -1,0 +1,87 @@
+"""``texlab presets``: every action, in words and as JSON; refusals are one sentence and change nothing."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from stub_method import stub  # noqa: F401
+
+from texlab.cli import main
+from texlab.commands.presets import own_presets
+
+METHOD = "stub"
+pytestmark = pytest.mark.usefixtures("stub")
+
+
+@pytest.fixture
+def call(capsys):
+    def run(*words, code=0):
+        assert main(["presets", *map(str, words)]) == code
+        return capsys.readouterr()
+
+    return run
+
+
+def saved(call, name="foam", **options):
+    words = [word for key, value in options.items() for word in (f"--{key}", value)]
+    return json.loads(call("save", name, "--method", METHOD, "--json", *words).out)
+
+
+def test_save_list_show(call):
+    answer = saved(call, note="for foam", set="level=2")
+    assert answer["method"] == METHOD
+    assert answer["parameters"] == {"level": 2.0}
+    listed = json.loads(call("--json").out)
+    assert {"source": "own", "name": "foam", "note": "for foam"}.items() <= listed[0].items()
+    assert call("list").out.startswith(f"{METHOD}/foam")
+    assert "for foam" in (text := call("show", "foam", "--method", METHOD).out)
+    assert "level=2.0" in text
+    shown = json.loads(call("show", "foam", "--method", METHOD, "--json").out)
+    assert shown == json.loads(call("--json", "show", "foam", "--method", METHOD).out)
+    assert shown["format"] == "texlab-preset"
+
+
+def test_export_import_rename_delete(call, tmp_path):
+    saved(call)
+    call("export", f"{METHOD}/foam", tmp_path)
+    file = tmp_path / f"{METHOD}-foam.json"
+    assert json.loads(file.read_text())["name"] == "foam"
+    assert "is there already" in call("export", "foam", file, code=2).err
+    call("export", "foam", file, "--replace")
+    assert "already" in call("import", file, code=2).err
+    call("import", file, "--name", "second")
+    call("rename", "second", "third")
+    assert [each.name for each in own_presets().presets()] == ["foam", "third"]
+    call("delete", "third")
+    call("import", file, "--replace")
+    assert [each.name for each in own_presets().presets()] == ["foam"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["show", "nothing-like-it"], "There is no preset called"),
+        (["delete", "nothing-like-it"], "There is no preset called"),
+        (["save", "a"], "say --method ID."),
+        (["save", "a/b", "--method", METHOD], "must hold no slash"),
+        (["save", "a", "--method", METHOD, "--set", "no_such=1"], "parameter name: must be"),
+        (["save", "a", "--method", "no-such"], "method: must be one of"),
+        (["list", "--method", "no-such"], "method: must be one of"),
+        (["import", "missing.json"], "cannot be read (No such file or directory)."),
+        (["export", "foam", f"{__file__}/x.json"], "cannot be made (File exists)."),
+    ],
+)
+def test_refusals(call, words, says):
+    saved(call)
+    captured = call(*words, code=2)
+    assert says in captured.err
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+    assert [each.name for each in own_presets().presets()] == ["foam"]
+
+
+def test_files_that_cannot_be_used_are_listed(call):
+    saved(call)
+    (own_presets().folder / "bad.json").write_text("{")
+    assert "not usable: The preset bad.json is not valid JSON" in call().out
