@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from texlab_core.api import available_methods, synthesize
     from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
+    from texlab_core.images import as_exemplar
     from texlab_core.inputs import ArraysInput, Crop, DataInput, ImageInput
     from texlab_core.params import Knob, Params, describe
     from texlab_core.registry import InputSpec, Method, find_method, register

@@ -62,6 +62,8 @@ class Method:
         ``check(inputs, params, size)`` raises ``InputError`` for combinations that cannot work.
     order
         Place in lists and in the first columns of the window.
+    random
+        False when no bit of the result depends on the seed.
     """
 
     id: str
@@ -75,6 +77,7 @@ class Method:
     inputs: tuple[InputSpec, ...] = (EXEMPLAR,)
     check: Callable[..., None] | None = None
     order: int = 100
+    random: bool = True
 
 
 _METHODS: dict[str, Method] = {}

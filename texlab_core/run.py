@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from texlab_core import __version__
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.inputs import ArraysInput, DataInput, ImageInput, Input
 from texlab_core.params import Params, frozen_mapping
@@ -247,8 +248,8 @@ def _drive(
 @memoize
 def versions() -> Mapping[str, str]:
     """Return the versions that influence the bits of a result."""
-    found = {"python": platform.python_version()}
-    for name in ("texlab", "numpy", "scipy", "numba", "opencv-contrib-python-headless"):
+    found = {"python": platform.python_version(), "texlab": __version__}
+    for name in ("numpy", "scipy", "numba", "opencv-contrib-python-headless"):
         try:
             found[name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
