@@ -88,8 +88,8 @@ def check_pixels(width: int, height: int, name: str) -> None:
         raise ImageError(f"{name}: the image is empty ({width} x {height} pixels).")
     if width * height > MAX_PIXELS:
         raise ImageError(
-            f"{name}: the image is too large; at most {MAX_PIXELS / 1e6:.0f} megapixels are read, "
-            f"and it has {width} x {height} = {width * height / 1e6:.0f}."
+            f"{name}: the image has {width} x {height} pixels; at most {MAX_PIXELS // 2**20} megapixels are read, "
+            "as in 8192 x 8192."
         )
 
 
@@ -129,7 +129,7 @@ def _reader(head: bytes) -> Callable[[BinaryIO, str], Decoded] | None:
 
 
 def _read_with_pillow(file: BinaryIO, name: str) -> Decoded:
-    image = _open(file)
+    image = _open(file, name)
     width, height = image.size
     check_pixels(width, height, name)
     notes: list[str] = []
@@ -152,19 +152,32 @@ def _read_with_pillow(file: BinaryIO, name: str) -> Decoded:
     return Decoded(values, int(np.iinfo(values.dtype).max), tuple(notes))
 
 
-def _open(file: BinaryIO) -> Any:
+def _open(file: BinaryIO, name: str) -> Any:
     """Read the header; the plugins are called directly because ``Image.open`` warns on its own, global, limit."""
     from PIL import BmpImagePlugin, JpegImagePlugin, PngImagePlugin, WebPImagePlugin
 
-    head = file.read(4)
+    head = file.read(32)
     file.seek(0)
     if head.startswith(b"\x89PNG"):
         return PngImagePlugin.PngImageFile(file)
     if head.startswith(b"RIFF"):
+        # This plugin applies the global limit even so.
+        check_pixels(*_webp_size(head), name)
         return WebPImagePlugin.WebPImageFile(file)
     if head.startswith(b"BM"):
         return BmpImagePlugin.BmpImageFile(file)
     return JpegImagePlugin.JpegImageFile(file)
+
+
+def _webp_size(head: bytes) -> tuple[int, int]:
+    """Return width and height (RFC 9649, sections 2.5 to 2.7)."""
+    kind = head[12:16]
+    if kind == b"VP8X":
+        return 1 + int.from_bytes(head[24:27], "little"), 1 + int.from_bytes(head[27:30], "little")
+    if kind == b"VP8L":
+        bits = int.from_bytes(head[21:25], "little")
+        return 1 + (bits & 0x3FFF), 1 + (bits >> 14 & 0x3FFF)
+    return int.from_bytes(head[26:28], "little") & 0x3FFF, int.from_bytes(head[28:30], "little") & 0x3FFF
 
 
 def _png_depth(file: BinaryIO) -> int:

@@ -63,8 +63,7 @@ def as_exemplar(
             return source if name is None else _renamed(source, name)
         whole = source.pixels if source.origin is None else source.origin.pixels
         return _prepare(whole, source.name if name is None else name, crop, scale, source.notes)
-    decoded, found = _load(source)
-    name = found if name is None else name
+    decoded, name = _load(source, name)
     notes = list(decoded.notes)
     pixels = _unit_range(decoded, _check_level(background), name, notes)
     return _prepare(pixels, name, crop, scale, tuple(notes))
@@ -74,35 +73,38 @@ def _renamed(source: ImageInput, name: str) -> ImageInput:
     return ImageInput(source.pixels, name, source.sha256, source.origin, source.notes)
 
 
-def _load(source: Source) -> tuple[Decoded, str]:
+def _load(source: Source, name: str | None) -> tuple[Decoded, str]:
+    """Return the decoded image and its name."""
     if isinstance(source, str) and source.startswith("gallery:"):
         from texlab_core.gallery import find_entry
 
         entry = find_entry(source)
-        return read_image(entry.read(), entry.uri), entry.uri
+        return read_image(entry.read(), entry.uri), name or entry.uri
     if isinstance(source, str | os.PathLike):
         shown = os.fspath(source)
-        return read_image(Path(source), shown), display_name(shown)
+        return read_image(Path(source), shown), name or display_name(shown)
     if isinstance(source, bytes | bytearray | memoryview):
-        return read_image(bytes(source), "image"), "image"
+        name = name or "image"
+        return read_image(bytes(source), name), name
     if isinstance(source, np.ndarray):
-        return _from_array(source), "array"
+        name = name or "array"
+        return _from_array(source, name), name
     raise ImageError(
         "An image must be an array, a path, the bytes of a file, an image input or gallery:NAME, "
         f"got {type(source).__name__}."
     )
 
 
-def _from_array(array: NDArray[Any]) -> Decoded:
+def _from_array(array: NDArray[Any], name: str) -> Decoded:
     if array.ndim == 2:
         array = array[:, :, None]
     if array.ndim != 3 or array.shape[2] not in (1, 3, 4):
-        raise ImageError(f"An array must have the shape (H, W) or (H, W, 1, 3 or 4), got {array.shape}.")
-    check_pixels(array.shape[1], array.shape[0], "array")
+        raise ImageError(f"{name}: the shape must be (H, W) or (H, W, 1, 3 or 4), got {array.shape}.")
+    check_pixels(array.shape[1], array.shape[0], name)
     if array.dtype in (np.uint8, np.uint16):
         return Decoded(array, int(np.iinfo(array.dtype).max))
     if array.dtype.kind != "f":
-        raise ImageError(f"An array must be of uint8, uint16 or floats, got {array.dtype}.")
+        raise ImageError(f"{name}: the values must be uint8, uint16 or floats, got {array.dtype}.")
     return Decoded(array, None)
 
 
