@@ -10,6 +10,7 @@ import time
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,6 +21,10 @@ PLATFORM = os.environ.get("TEXLAB_TEST_PLATFORM", "offscreen")
 os.environ["QT_QPA_PLATFORM"] = PLATFORM
 os.environ["QT_LOGGING_RULES"] = "qt.qpa.*=false"
 os.environ.setdefault("PYTHONHASHSEED", "0")
+
+# The same examples on every run, and no clock: a failure can be repeated and load cannot cause one.
+settings.register_profile("texlab", deadline=None, derandomize=True, database=None)
+settings.load_profile("texlab")
 
 pytest_plugins = ["tests.coverage_floor"]
 PATIENCE_S = 2.0
