@@ -1,0 +1,384 @@
+"""Sweeps: one or two knobs over ranges, a grid of jobs, run side by side."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import logging
+import math
+import os
+import queue
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from texlab_core import strict_json
+from texlab_core.errors import Cancelled, InputError, ParamError
+from texlab_core.params import Field, Knob, describe, frozen_mapping
+from texlab_core.registry import find_method
+from texlab_core.run import MAX_SEED, AnalysisCache, Job, check_seed, run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from texlab_core.params import Params
+    from texlab_core.steps import Output, Result, Step
+
+MAX_CELLS = 400
+_POLL_S = 0.01
+_FORMS = "NAME=FROM:TO:COUNT, NAME=FROM:TO:COUNT:log or NAME=A,B,C"
+
+
+@dataclass(frozen=True)
+class Vary:
+    """One axis of a sweep: a knob (or ``seed``) and the values it takes, in order."""
+
+    name: str
+    values: tuple[Any, ...]
+
+    @classmethod
+    def parse(cls, text: str, params: type[Params]) -> Vary:
+        """Read ``name=from:to:count[:log]``, ``name=a,b,c`` or ``name=[JSON, ...]``.
+
+        Integers are rounded (to odd ones where only those are allowed), values that fall together are kept once.
+
+        Raises
+        ------
+        ParamError
+            When the knob is unknown, the text has another form, or a value is out of range.
+        """
+        name, equals, values = (part.strip() for part in text.partition("="))
+        if not equals or not name or not values:
+            raise ParamError("vary", _FORMS, text)
+        knob = _knob(name.replace("-", "_"), params)
+        if values.startswith("["):
+            given = strict_json.loads(values, what=f"the list of {knob.name}")
+            return cls.of(knob.name, given, params)
+        if ":" in values and knob.kind in ("int", "float"):
+            return cls(knob.name, _range(knob, values))
+        return cls(knob.name, _checked(knob, values.split(","), knob.parse))
+
+    @classmethod
+    def of(cls, name: str, values: Any, params: type[Params]) -> Vary:
+        """Check values that come as data; raises ``ParamError`` like :meth:`parse`."""
+        knob = _knob(name, params)
+        if not isinstance(values, list | tuple) or not values:
+            raise ParamError("vary", f"a list of values for {name}", values)
+        return cls(name, _checked(knob, values, knob.check))
+
+
+def _knob(name: str, params: type[Params]) -> Field:
+    if name == "seed":
+        return Field("seed", "int", int, 0, Knob(help="Seed of the random numbers", low=0, high=MAX_SEED))
+    fields = {each.name: each for each in describe(params)}
+    if name not in fields:
+        known = [*fields, "seed"]
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f" (did you mean {close[0]}?)" if close else ""
+        raise ParamError("vary", f"one of {', '.join(known)}{hint}", name)
+    return fields[name]
+
+
+def _range(knob: Field, text: str) -> tuple[Any, ...]:
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
+        raise ParamError("vary", _FORMS, f"{knob.name}={text}")
+    first, last = knob.parse(parts[0]), knob.parse(parts[1])
+    if not (parts[2].isascii() and parts[2].isdigit() and 1 <= int(parts[2][:9]) <= MAX_CELLS):
+        raise ParamError("vary", f"a count from 1 to {MAX_CELLS} for {knob.name}", parts[2])
+    return spread(knob, first, last, int(parts[2]), log=len(parts) == 4)
+
+
+def spread(knob: Field, first: float, last: float, count: int, *, log: bool = False) -> tuple[Any, ...]:
+    """Return ``count`` values of a knob from ``first`` to ``last``, evenly or in even ratios.
+
+    Raises
+    ------
+    ParamError
+        When ``log`` is asked for and one end is not positive.
+    """
+    if log and (first <= 0 or last <= 0):
+        raise ParamError("vary", f"a range above 0 for {knob.name} in even ratios", f"{first:g}:{last:g}")
+    places = np.geomspace(first, last, count) if log else np.linspace(first, last, count)
+    low, high = min(first, last), max(first, last)
+    # 12 digits: 0.1 + 0.2 is to be shown, and stored, as 0.3; never outside of the ends.
+    values = [min(max(float(f"{place:.12g}"), low), high) for place in places]
+    if knob.kind == "int":
+        values = [2 * math.floor(each / 2) + 1 if knob.knob.odd else math.floor(each + 0.5) for each in values]
+    return _distinct([knob.check(each) for each in values])
+
+
+def _checked(knob: Field, values: Sequence[Any], check: Callable[[Any], Any]) -> tuple[Any, ...]:
+    if len(values) > MAX_CELLS:
+        raise ParamError("vary", f"at most {MAX_CELLS} values for {knob.name}", len(values))
+    return _distinct([check(each) for each in values])
+
+
+def _distinct(values: list[Any]) -> tuple[Any, ...]:
+    return tuple(value for place, value in enumerate(values) if value not in values[:place])
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A grid of jobs, checked before any of them starts.
+
+    Parameters
+    ----------
+    base
+        The job that every cell shares but for the varied knobs.
+    axes
+        One or two; the first runs across, the second down. Two axes make rows and columns; one axis is a series.
+
+    Raises
+    ------
+    InputError
+        When an axis is unknown or named twice, a value is out of range, or there are more than 400 cells.
+    """
+
+    base: Job
+    axes: tuple[Vary, ...]
+    jobs: tuple[Job, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        params = type(self.base.params)
+        if not 1 <= len(self.axes) <= 2:
+            raise InputError(f"A sweep varies one or two knobs, got {len(self.axes)}.")
+        if len({axis.name for axis in self.axes}) < len(self.axes):
+            raise InputError(f"A sweep varies two different knobs, got {self.axes[0].name} twice.")
+        count = math.prod(len(axis.values) for axis in self.axes)
+        if count > MAX_CELLS:
+            raise InputError(f"A sweep has at most {MAX_CELLS} cells, got {count}.")
+        axes = tuple(Vary.of(axis.name, axis.values, params) for axis in self.axes)
+        object.__setattr__(self, "axes", axes)
+        object.__setattr__(self, "jobs", tuple(self._job(index) for index in range(count)))
+
+    def values(self, index: int) -> Mapping[str, Any]:
+        """Return what is varied in one cell, by name."""
+        across = self.axes[0]
+        found = {across.name: across.values[index % len(across.values)]}
+        if len(self.axes) == 2:
+            found[self.axes[1].name] = self.axes[1].values[index // len(across.values)]
+        return frozen_mapping(found)
+
+    def _job(self, index: int) -> Job:
+        changes = dict(self.values(index))
+        seed = check_seed(changes.pop("seed", self.base.seed))
+        return dataclasses.replace(self.base, params=self.base.params.replace(**changes), seed=seed)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Cell:
+    """One finished cell.
+
+    Parameters
+    ----------
+    index
+        Place in the grid, row by row.
+    job
+        What was run.
+    values
+        What was varied, by name.
+    result
+        What came out, without maps, model and details; None when it failed.
+    error
+        Why it failed, one sentence.
+    copied
+        Share of neighbouring pixels with neighbouring sources, 0 .. 1; None for methods without a source map.
+    candidates
+        Median number of candidates of a pixel; None for methods that count none.
+    """
+
+    index: int
+    job: Job
+    values: Mapping[str, Any]
+    result: Result | None = None
+    error: str = ""
+    copied: float | None = None
+    candidates: float | None = None
+
+    @property
+    def setting(self) -> str:
+        """What was varied, in words: "alpha 0.15, beta 1"."""
+        return ", ".join(f"{name.replace('_', ' ')} {show(value)}" for name, value in self.values.items())
+
+    @property
+    def evidence(self) -> str:
+        """Copied share and median candidate count, as far as there are any: "copied 0.94, median 14"."""
+        if self.error:
+            return "failed"
+        found = [] if self.copied is None else [f"copied {self.copied:.2f}"]
+        return ", ".join(found if self.candidates is None else [*found, f"median {self.candidates:.4g}"])
+
+    @property
+    def label(self) -> str:
+        """Everything in one line."""
+        return ", ".join(part for part in (self.setting, self.evidence) if part)
+
+
+def show(value: object) -> str:
+    """Return a varied value as a label shows it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value) if isinstance(value, int | str) else type(value).__name__
+
+
+def run_sweep(
+    sweep: Sweep,
+    on_cell: Callable[[Cell], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+    *,
+    on_progress: Callable[[float], None] | None = None,
+    cache: AnalysisCache | None = None,
+    workers: int | None = None,
+) -> tuple[Cell, ...]:
+    """Run every cell, as many side by side as there are cores.
+
+    No bit of a cell depends on the others, on their order or on the number of workers. Cells that share an
+    analysis make it once. A cell that fails keeps its sentence, the others go on.
+
+    Parameters
+    ----------
+    sweep
+        The grid.
+    on_cell
+        Called with each cell as it finishes, in this thread, in the order of finishing.
+    should_stop
+        Asked in this thread about a hundred times a second.
+    on_progress
+        Called in this thread with the share done, 0 .. 1, never falling.
+    cache
+        Where analyses are kept and found; a new one when None.
+    workers
+        Threads; None means one for each core.
+
+    Returns
+    -------
+    tuple of Cell
+        In the order of the grid.
+
+    Raises
+    ------
+    Cancelled
+        When ``should_stop`` said so; every thread has ended then.
+    """
+    state = _State(sweep, AnalysisCache() if cache is None else cache)
+    count = max(1, min(len(sweep.jobs), (os.cpu_count() or 1) if workers is None else workers))
+    cells: dict[int, Cell] = {}
+    with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
+        try:
+            for index in range(len(sweep.jobs)):
+                # With one worker a transform may use its usual threads.
+                pool.submit(state.run_cell, index, None if count == 1 else 1)
+            while len(cells) < len(sweep.jobs):
+                if should_stop is not None and should_stop():
+                    raise Cancelled
+                try:
+                    outcome = state.finished.get(timeout=_POLL_S)
+                except queue.Empty:
+                    outcome = None
+                if on_progress is not None:
+                    on_progress(float(state.fractions.mean()))
+                if outcome is not None:
+                    cells[outcome.index] = outcome
+                    if on_cell is not None:
+                        on_cell(outcome)
+        finally:
+            state.stop.set()
+            pool.shutdown(wait=True, cancel_futures=True)
+    return tuple(cells[index] for index in sorted(cells))
+
+
+class _State:
+    """What the threads of one sweep share."""
+
+    def __init__(self, sweep: Sweep, cache: AnalysisCache) -> None:
+        self.sweep = sweep
+        self.cache = cache
+        self.stop = threading.Event()
+        self.finished: queue.SimpleQueue[Cell] = queue.SimpleQueue()
+        self.fractions = np.zeros(len(sweep.jobs))
+        self._locks: dict[tuple[object, ...], threading.Lock] = {}
+        self._guard = threading.Lock()
+
+    def run_cell(self, index: int, threads: int | None) -> None:
+        make = partial(Cell, index=index, job=self.sweep.jobs[index], values=self.sweep.values(index))
+        try:
+            cell = make(**self._run(index, threads))
+        except Cancelled:
+            return
+        except InputError as error:
+            cell = make(error=str(error))
+        except MemoryError:
+            cell = make(error="There is not enough memory for this; try a smaller size.")
+        except Exception as error:
+            logging.getLogger(__name__).exception("A cell of a sweep failed")
+            cell = make(error=f"Something unexpected happened ({type(error).__name__}: {error}).")
+        self.fractions[index] = 1.0
+        self.finished.put(cell)
+
+    def _run(self, index: int, threads: int | None) -> dict[str, Any]:
+        job = self.sweep.jobs[index]
+        turn = _Turn(self._lock_of(job), self.stop)
+
+        def watch(step: Step) -> None:
+            if step.phase == "synthesis":
+                turn.give_back()
+            share = 0.1 * step.fraction if step.phase == "analysis" else 0.1 + 0.89 * step.fraction
+            self.fractions[index] = max(self.fractions[index], share)
+
+        try:
+            if self.cache.get(job.analysis_key) is None:
+                turn.take()
+            result = run(job, watch, self.stop.is_set, cache=self.cache, threads=threads)
+        finally:
+            turn.give_back()
+        copied, candidates = evidence_of(result)
+        light = dataclasses.replace(result, model=None, maps={}, details=None)
+        return {"result": light, "copied": copied, "candidates": candidates}
+
+    def _lock_of(self, job: Job) -> threading.Lock:
+        with self._guard:
+            return self._locks.setdefault(job.analysis_key, threading.Lock())
+
+
+class _Turn:
+    """A lock that is waited for in short naps, and given back once."""
+
+    def __init__(self, lock: threading.Lock, stop: threading.Event) -> None:
+        self._lock = lock
+        self._stop = stop
+        self._held = False
+
+    def take(self) -> None:
+        while not self._held:
+            if self._stop.is_set():
+                raise Cancelled
+            self._held = self._lock.acquire(timeout=_POLL_S)
+
+    def give_back(self) -> None:
+        if self._held:
+            self._held = False
+            self._lock.release()
+
+
+def evidence_of(result: Output) -> tuple[float | None, float | None]:
+    """Return the share of copied neighbours and the median candidate count, None where there is no such map."""
+    from texlab_core.stats.copying import continuous_share
+
+    source = next((each.data for each in result.maps.values() if each.kind == "source"), None)
+    counts = next((each.data for each in result.maps.values() if each.kind == "count"), None)
+    copied = None if source is None else continuous_share(source)
+    candidates = None if counts is None else float(np.median(counts))
+    return copied, candidates
+
+
+def sweep_of(base: Job, texts: list[str]) -> Sweep:
+    """Make a sweep from the texts of ``--vary``; raises ``InputError`` before any work starts."""
+    params = find_method(base.method).params
+    return Sweep(base, tuple(Vary.parse(text, params) for text in texts))
