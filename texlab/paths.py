@@ -13,12 +13,8 @@ def _folder(kind: str) -> Path:
     else:
         import platformdirs
 
-        where = {
-            "config": platformdirs.user_config_path,
-            "log": platformdirs.user_log_path,
-            "cache": platformdirs.user_cache_path,
-        }
-        folder = where[kind]("texlab", appauthor=False)
+        dirs = platformdirs.PlatformDirs("texlab", appauthor=False)
+        folder = dirs.user_log_path if kind == "log" else dirs.user_config_path
     return folder
 
 

@@ -168,7 +168,8 @@ def stylesheet(theme: Theme) -> str:
     QLabel[role="warning"] {{ color: {theme.warning}; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
     QListWidget, QTreeWidget, QScrollArea {{ border: none; }}
-    QProgressBar {{ border: none; background: {theme.raised}; max-height: 4px; min-height: 4px; border-radius: 2px; }}
+    QProgressBar {{ border: none; background: {theme.raised}; border-radius: 2px; }}
+    QProgressBar {{ max-height: 4px; min-height: 4px; }}
     QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
     QSplitter::handle {{ background: {theme.window}; }}
     QSplitter::handle:hover {{ background: {theme.accent}; }}

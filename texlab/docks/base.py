@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 class Dock(QWidget):
     """A tab below the images.
 
-    A dock never computes and never writes the session. ``question`` says (quickly, from the scene and the dock's
-    own controls) what is to be computed in a background thread; ``present`` shows the answer. When its own controls
-    change what it asks, a dock emits ``asks``. What the user does to the session through it (take parameters,
+    A dock never computes and never writes the session. ``question`` says (quickly, from the scene and the
+    dock's own controls) what is to be computed in a background thread; ``present`` shows the answer. When its
+    own controls change what it asks, a dock emits ``asks``. What the user does to the session through it (take
+    parameters,
     choose a pixel) it emits as ``intention``: a callable that is given the controller.
     """
 

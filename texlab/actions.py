@@ -1,0 +1,87 @@
+"""Every command of the window, declared once: text, keys, explanation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtGui import QAction, QKeySequence
+
+if TYPE_CHECKING:
+    from PySide6.QtWidgets import QWidget
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: where it is found in the menus, its name, text, keys and explanation."""
+
+    menu: str
+    name: str
+    text: str
+    keys: str = ""
+    help: str = ""
+    checkable: bool = False
+    separator: bool = False
+
+
+COMMANDS = (
+    Command("&File", "open", "&Open image ...", "Ctrl+O", "Open an image, or a saved result with its recipe"),
+    Command("&File", "paste", "&Paste image", "Ctrl+V", "Use the image on the clipboard as exemplar"),
+    Command("&File", "export", "&Save result ...", "Ctrl+S", "Save the chosen column's result with its recipe"),
+    Command("&File", "quit", "&Quit", "Ctrl+Q", "Close the window; the session comes back", separator=True),
+    Command("&Edit", "undo", "&Undo", "Ctrl+Z", "Take the last change back"),
+    Command("&Edit", "redo", "&Redo", "Ctrl+Shift+Z", "Do it again"),
+    Command("&Edit", "copy", "&Copy picture", "Ctrl+C", "Copy the chosen column's picture", separator=True),
+    Command("&Edit", "dice", "&New seed", "D", "Another seed for all columns"),
+    Command("&Edit", "reset", "R&eset parameters", "", "Defaults for the chosen column"),
+    Command("&Edit", "palette", "Command &palette ...", "Ctrl+K", "Find any command by its name", separator=True),
+    Command("&Column", "add", "&Add column", "Ctrl+T", "Add a column"),
+    Command("&Column", "duplicate", "&Duplicate column", "Ctrl+D", "Copy the chosen column to compare settings"),
+    Command("&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column"),
+    Command("&Column", "left", "Move &left", "Ctrl+Shift+Left", "Move the chosen column to the left"),
+    Command("&Column", "right", "Move &right", "Ctrl+Shift+Right", "Move the chosen column to the right"),
+    Command("&Column", "previous", "&Previous column", "Ctrl+PgUp", "Choose the column to the left"),
+    Command("&Column", "next", "&Next column", "Ctrl+PgDown", "Choose the column to the right"),
+    Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),
+    Command("&Column", "stop", "&Stop column", "Esc", "Stop the chosen column"),
+    Command("&Column", "run-all", "Run a&ll", "Shift+F5", "Run every column"),
+    Command("&Column", "stop-all", "S&top all", "Shift+Esc", "Stop every column"),
+    Command("&View", "fit", "&Fit", "F", "Show the pictures whole"),
+    Command("&View", "actual", "&Actual size", "1", "One image pixel per screen pixel"),
+    Command("&View", "zoom-in", "Zoom &in", "+", "Enlarge"),
+    Command("&View", "zoom-out", "Zoom &out", "-", "Reduce"),
+    Command("&View", "tile", "&Tile 2 x 2", "T", "Show every result four times, so that seams are seen", True),
+    Command("&View", "crop", "&Crop box", "X", "Use a part of the exemplar", True),
+    Command("&View", "theme-auto", "Theme of the &system", "", "Follow the system", separator=True),
+    Command("&View", "theme-light", "&Light theme", "", "Light"),
+    Command("&View", "theme-dark", "&Dark theme", "", "Dark"),
+    Command("&View", "layout-explore", "Layout &Explore", "Ctrl+1", "Everything in sight", separator=True),
+    Command("&View", "layout-teach", "Layout T&each", "Ctrl+2", "Large: the images and one dock, for a projector"),
+    Command("&View", "layout-tune", "Layout T&une", "Ctrl+3", "Wide parameters, no gallery"),
+    Command("&Help", "help", "&Help", "F1", "Explain the chosen method"),
+    Command("&Help", "help-window", "The &window", "", "Explain the window"),
+    Command("&Help", "shortcuts", "&Keyboard", "", "List the keys"),
+    Command("&Help", "about", "&About TexLab", "", "Version and licence"),
+)
+
+
+def make_actions(owner: QWidget) -> dict[str, QAction]:
+    """Return an action for every command, by name."""
+    made = {}
+    for command in COMMANDS:
+        action = QAction(command.text, owner)
+        action.setObjectName(f"action-{command.name}")
+        action.setCheckable(command.checkable)
+        if command.keys:
+            action.setShortcut(QKeySequence(command.keys))
+        keys = f" ({action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)})" if command.keys else ""
+        action.setToolTip(f"{command.help or plain(command.text)}{keys}")
+        action.setStatusTip(command.help)
+        made[command.name] = action
+        owner.addAction(action)
+    return made
+
+
+def plain(text: str) -> str:
+    """Return a menu text without its marks."""
+    return text.replace("&", "").replace(" ...", "")

@@ -1,0 +1,102 @@
+"""One run of one column in its worker's thread: previews, kept frames, the result."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+from texlab.pictures import to_picture
+from texlab.scene import Frame, Picture
+from texlab_core.run import Job, run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from texlab_core.inputs import ImageInput
+    from texlab_core.run import AnalysisCache
+    from texlab_core.steps import FloatImage, Result, Step
+
+MAX_FRAME_BYTES = 96 * 2**20
+
+
+class TaskLike(Protocol):
+    """What a run needs of its worker."""
+
+    def should_stop(self) -> bool:
+        """Whether to stop."""
+        ...
+
+    def due(self) -> bool:
+        """Whether another report would be shown."""
+        ...
+
+    def progress(self, value: object) -> None:
+        """Report."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Progress:
+    """A report on the way."""
+
+    fraction: float
+    message: str
+    metrics: Mapping[str, float]
+    picture: Picture | None
+    image: FloatImage | None
+    frames: tuple[Frame, ...]
+    elapsed_s: float
+    state: Callable[[], Any] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """The end of a run."""
+
+    result: Result
+    picture: Picture
+    frames: tuple[Frame, ...]
+    draft: bool
+
+
+@dataclass
+class ColumnRun:
+    """A request for a worker: runs ``job`` (or its draft)."""
+
+    make_job: Callable[[], Job]
+    cache: AnalysisCache
+    draft: bool = False
+    frames: list[Frame] = field(default_factory=list)
+
+    def __call__(self, task: TaskLike) -> Finished:
+        """Run to the end, reporting on the way."""
+        start = time.perf_counter()
+        kept = 0
+        metrics: dict[str, float] = {}
+
+        def watch(step: Step) -> None:
+            nonlocal kept
+            metrics.update(step.metrics)
+            due = task.due()
+            keep = step.frame is not None and not self.draft and kept < MAX_FRAME_BYTES
+            image = step.preview() if step.preview is not None and (due or keep) else None
+            picture = to_picture(image) if image is not None else None
+            if keep and picture is not None and step.frame is not None:
+                kept += picture.nbytes
+                self.frames.append(Frame(step.frame, picture))
+            if due and not self.draft:
+                fraction = step.fraction if step.phase == "synthesis" else 0.0
+                elapsed = time.perf_counter() - start
+                message = step.stage or step.phase
+                task.progress(
+                    Progress(fraction, message, dict(metrics), picture, image, tuple(self.frames), elapsed)
+                )
+
+        result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
+        return Finished(result, to_picture(result.image), tuple(self.frames), self.draft)
+
+
+def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
+    """Return the named inputs of a column's job."""
+    return {"exemplar": exemplar, **dict(inputs)}

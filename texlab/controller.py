@@ -1,0 +1,392 @@
+"""Owns the workers, and applies the differences between two sessions to them and to the views."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import logging
+import os
+import time
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from texlab.column_run import ColumnRun, Finished, Progress, with_exemplar
+from texlab.jobs import Request, Slots, Task, Worker
+from texlab.pictures import to_picture
+from texlab.resolve import difference, draft_size
+from texlab.scene import ColumnScene, Picture, Scene
+from texlab_core.registry import find_method
+from texlab_core.run import AnalysisCache, Job
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.session import Column, Sample, Session, State
+    from texlab.theme import ThemeSource
+    from texlab_core.inputs import Crop, ImageInput
+    from texlab_core.params import Params
+
+log = logging.getLogger(__name__)
+
+
+@dataclasses.dataclass(eq=False)
+class _Runtime:
+    """What the controller keeps of one column."""
+
+    worker: Worker
+    scene: ColumnScene
+    seconds: float | None = None
+    started_at: float = 0.0
+    drafted: bool = False
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Prepared:
+    """The exemplar as the methods get it, and its scaled source as it is shown."""
+
+    exemplar: ImageInput
+    source_picture: Picture
+    source_scaled: ImageInput
+
+
+class Controller(QObject):
+    """Runs columns when the session changes and tells the window what to show.
+
+    ``scene_changed(scene)`` after every change; ``exemplar_ready(prepared)`` when another exemplar is in use;
+    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news.
+    """
+
+    scene_changed = Signal(object)
+    exemplar_ready = Signal(object)
+    problem = Signal(str)
+    said = Signal(str)
+    all_idle = Signal()
+
+    def __init__(self, session: Session, themes: ThemeSource, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self._themes = themes
+        self._slots = Slots(max(1, os.cpu_count() or 1))
+        self._cache = AnalysisCache()
+        self._runtimes: dict[int, _Runtime] = {}
+        self._prepared: Prepared | None = None
+        self._dragging = False
+        self._once_workers: set[Worker] = set()
+        self._exemplar_worker = Worker("exemplar", parent=self)
+        self._exemplar_worker.finished.connect(self._exemplar_prepared)
+        self._exemplar_worker.failed.connect(self._exemplar_failed)
+        self._refresh = QTimer(self)
+        self._refresh.setSingleShot(True)
+        self._refresh.setInterval(0)
+        self._refresh.timeout.connect(self._announce)
+        session.changed.connect(self._session_changed)
+        session.selected.connect(lambda _: self._refresh.start())
+        themes.changed.connect(lambda _: self._refresh.start())
+
+    # What there is to show.
+
+    @property
+    def exemplar(self) -> ImageInput | None:
+        """The exemplar in use (the session's, once it is prepared)."""
+        return self._prepared.exemplar if self._prepared is not None else None
+
+    @property
+    def prepared(self) -> Prepared | None:
+        """The exemplar with its scaled source."""
+        return self._prepared
+
+    def scene(self) -> Scene:
+        """Return the frozen picture of now."""
+        columns = tuple(
+            self._runtimes[column.id].scene for column in self.session.state.columns if column.id in self._runtimes
+        )
+        return Scene(self._themes.theme, self.exemplar, columns, self.session.selected_id)
+
+    def column_scene(self, column_id: int) -> ColumnScene | None:
+        """Return what one column shows."""
+        runtime = self._runtimes.get(column_id)
+        return runtime.scene if runtime is not None else None
+
+    @property
+    def busy(self) -> bool:
+        """Whether any column waits or runs, or the exemplar is being prepared."""
+        running = any(each.scene.status in ("waiting", "running") for each in self._runtimes.values())
+        return running or self._exemplar_worker.busy or bool(self._once_workers)
+
+    # What the user does.
+
+    def edit_params(self, column_id: int, params: Params, name: str, final: bool) -> None:
+        """Take parameters from the form: drafts while a control is dragged, the full size on release."""
+        with self._drag(not final):
+            self.session.set_params(column_id, params, name, merge=("knob", column_id, name))
+        self._settle(final, (column_id,))
+
+    def edit_crop(self, crop: Crop | None, final: bool) -> None:
+        """Take another crop from the exemplar's box."""
+        sample = self.session.state.sample
+        if sample is not None:
+            with self._drag(not final):
+                self.session.set_sample(dataclasses.replace(sample, crop=crop), merge="crop")
+            self._settle(final, tuple(self._runtimes))
+
+    def edit_scale(self, scale: float) -> None:
+        """Scale the source; the crop is scaled along."""
+        sample = self.session.state.sample
+        if sample is None or scale == sample.scale:
+            return
+        self.session.set_sample(rescaled(sample, scale), merge="scale")
+
+    @contextlib.contextmanager
+    def _drag(self, dragging: bool) -> Any:
+        self._dragging = dragging
+        try:
+            yield
+        finally:
+            self._dragging = False
+
+    def _settle(self, final: bool, columns: tuple[int, ...]) -> None:
+        if not final:
+            return
+        self.session.finish_merge()
+        for column_id in columns:
+            runtime = self._runtimes.get(column_id)
+            if runtime is not None and runtime.drafted:
+                self.run_column(column_id)
+
+    def reset_params(self, column_id: int) -> None:
+        """Give a column its method's defaults."""
+        column = self.session.state.column(column_id)
+        if column is not None:
+            self.session.set_params(column_id, find_method(column.method).params(), "reset all")
+
+    def run_column(self, column_id: int) -> None:
+        """Run a column at full size."""
+        self._start(column_id, draft=False)
+
+    def run_all(self) -> None:
+        """Run every column."""
+        for column in self.session.state.columns:
+            self.run_column(column.id)
+
+    def stop_column(self, column_id: int) -> None:
+        """Stop a column; the others go on."""
+        runtime = self._runtimes.get(column_id)
+        if runtime is not None and runtime.scene.status in ("waiting", "running"):
+            runtime.worker.cancel()
+
+    def stop_all(self) -> None:
+        """Stop every column."""
+        for column_id in list(self._runtimes):
+            self.stop_column(column_id)
+
+    def once(self, name: str, request: Request, done: Callable[[Any], None] | None = None) -> None:
+        """Do something once in the background (open, save); a failure becomes one sentence."""
+        worker = Worker(name, parent=self)
+        self._once_workers.add(worker)
+
+        def end() -> None:
+            if worker in self._once_workers:
+                self._once_workers.discard(worker)
+                worker.close()
+                worker.deleteLater()
+                if not self.busy:
+                    self.all_idle.emit()
+
+        if done is not None:
+            worker.finished.connect(done)
+        worker.failed.connect(self.problem)
+        worker.idle.connect(end)
+        worker.submit(request)
+
+    def close(self) -> None:
+        """Stop and join every thread."""
+        self._refresh.stop()
+        workers = [runtime.worker for runtime in self._runtimes.values()]
+        for worker in [*workers, self._exemplar_worker, *self._once_workers]:
+            worker.close()
+        self._runtimes.clear()
+        self._once_workers.clear()
+
+    # The session has changed.
+
+    def _session_changed(self, before: State, after: State) -> None:
+        changes = difference(before, after)
+        for column_id in changes.removed:
+            runtime = self._runtimes.pop(column_id)
+            runtime.worker.close()
+            runtime.worker.deleteLater()
+        for column_id in changes.added:
+            self._add_runtime(column_id)
+        if changes.sample:
+            self._prepare(after.sample)
+        elif self._prepared is not None:
+            for column_id in changes.run:
+                self._start(column_id, draft=self._dragging)
+        self._refresh.start()
+
+    def _add_runtime(self, column_id: int) -> None:
+        column = self._column(column_id)
+        worker = Worker(f"column-{column_id}", self._slots, self)
+        method = find_method(column.method)
+        runtime = _Runtime(worker, ColumnScene(column_id, method.id, method.title, column.params))
+        self._runtimes[column_id] = runtime
+        worker.started.connect(lambda _: self._run_started(column_id))
+        worker.progressed.connect(partial(self._run_progressed, column_id))
+        worker.finished.connect(partial(self._run_finished, column_id))
+        worker.failed.connect(partial(self._run_failed, column_id))
+        worker.cancelled.connect(lambda: self._run_cancelled(column_id))
+
+    def _column(self, column_id: int) -> Column:
+        column = self.session.state.column(column_id)
+        assert column is not None
+        return column
+
+    def _prepare(self, sample: Sample | None) -> None:
+        for column_id, runtime in self._runtimes.items():
+            runtime.worker.cancel()
+            self._set(column_id, status="idle" if sample is None else "waiting", message="", result=None)
+        if sample is None:
+            self._prepared = None
+            return
+        draft = self._dragging
+        before = self._prepared
+
+        def work(task: Task) -> tuple[Prepared, bool]:
+            return prepare(sample, before), draft
+
+        self._exemplar_worker.submit(work)
+
+    def _exemplar_prepared(self, value: tuple[Prepared, bool]) -> None:
+        self._prepared, draft = value
+        self.exemplar_ready.emit(self._prepared)
+        for column in self.session.state.columns:
+            self._start(column.id, draft=draft)
+        self._refresh.start()
+
+    def _exemplar_failed(self, sentence: str) -> None:
+        self.problem.emit(sentence)
+        for column_id in self._runtimes:
+            self._set(column_id, status="failed", message=sentence, result=None, draft=False)
+
+    def _start(self, column_id: int, *, draft: bool) -> None:
+        runtime = self._runtimes.get(column_id)
+        if runtime is None or self._prepared is None:
+            return
+        column = self._column(column_id)
+        state = self.session.state
+        exemplar = self._prepared.exemplar
+        size = draft_size(state.size, runtime.seconds) if draft else None
+        runtime.drafted = size is not None
+
+        def make_job() -> Job:
+            return Job(
+                method=column.method,
+                inputs=with_exemplar(exemplar, column.inputs),
+                params=column.params,
+                size=size or state.size,
+                seed=state.seed,
+            )
+
+        method = find_method(column.method)
+        self._set(
+            column_id,
+            method=method.id,
+            title=method.title,
+            params=column.params,
+            status="waiting",
+            message="",
+            fraction=0.0,
+            result=None,
+            frames=() if size is None else runtime.scene.frames,
+            metrics={},
+            draft=size is not None,
+            elapsed_s=0.0,
+        )
+        runtime.worker.submit(ColumnRun(make_job, self._cache, draft=size is not None))
+
+    # The workers report.
+
+    def _set(self, column_id: int, **changes: Any) -> None:
+        runtime = self._runtimes.get(column_id)
+        if runtime is not None:
+            runtime.scene = dataclasses.replace(runtime.scene, **changes)
+            self._refresh.start()
+
+    def _run_started(self, column_id: int) -> None:
+        self._runtimes[column_id].started_at = time.perf_counter()
+        self._set(column_id, status="running")
+
+    def _run_progressed(self, column_id: int, report: Progress) -> None:
+        changes: dict[str, Any] = {
+            "fraction": report.fraction,
+            "message": report.message,
+            "metrics": report.metrics,
+            "frames": report.frames,
+            "elapsed_s": report.elapsed_s,
+        }
+        if report.picture is not None:
+            changes |= {"picture": report.picture, "image": report.image}
+        self._set(column_id, **changes)
+
+    def _run_finished(self, column_id: int, end: Finished) -> None:
+        runtime = self._runtimes[column_id]
+        if not end.draft:
+            runtime.seconds = end.result.elapsed_s
+        changes: dict[str, Any] = {
+            "status": "finished",
+            "message": "",
+            "fraction": 1.0,
+            "picture": end.picture,
+            "image": end.result.image,
+            "draft": end.draft,
+            "elapsed_s": end.result.elapsed_s,
+            "result": end.result,
+        }
+        if not end.draft:
+            changes["frames"] = end.frames
+        self._set(column_id, **changes)
+
+    def _run_failed(self, column_id: int, sentence: str) -> None:
+        self._set(column_id, status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
+
+    def _run_cancelled(self, column_id: int) -> None:
+        self._set(column_id, status="cancelled", message="", draft=False)
+
+    def _announce(self) -> None:
+        self.scene_changed.emit(self.scene())
+        if not self.busy:
+            self.all_idle.emit()
+
+
+def prepare(sample: Sample, before: Prepared | None) -> Prepared:
+    """Scale and crop a sample (in a worker's thread); the scaled source is taken over when it is the same."""
+    from texlab_core.images import as_exemplar
+
+    scaled = as_exemplar(sample.source, scale=sample.scale) if sample.scale != 1.0 else sample.source
+    if before is not None and before.source_scaled.sha256 == scaled.sha256:
+        picture = before.source_picture
+    else:
+        picture = to_picture(scaled.pixels)
+    exemplar = scaled
+    if sample.crop is not None:
+        exemplar = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop)
+    return Prepared(exemplar, picture, scaled)
+
+
+def rescaled(sample: Sample, scale: float) -> Sample:
+    """Return the sample at another scale with its crop over the same part of the picture."""
+    from texlab_core.images import scaled_size
+    from texlab_core.inputs import Crop
+
+    crop = sample.crop
+    if crop is not None:
+        factor = scale / sample.scale
+        height, width = scaled_size(*sample.source.size, scale)
+        rows = min(max(round(crop.height * factor), 2), height)
+        columns = min(max(round(crop.width * factor), 2), width)
+        top = min(round(crop.top * factor), height - rows)
+        left = min(round(crop.left * factor), width - columns)
+        crop = Crop(top, left, rows, columns)
+    return dataclasses.replace(sample, scale=scale, crop=crop)

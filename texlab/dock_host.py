@@ -1,0 +1,101 @@
+"""Asks the docks' questions in the background and hands them the answers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QEvent, QObject, Signal
+
+from texlab.jobs import Slots, Task, Worker
+
+if TYPE_CHECKING:
+    from texlab.docks.base import Dock
+    from texlab.scene import Question, Scene
+
+NOTHING_YET = "There is nothing to show yet."
+
+
+class DockHost(QObject):
+    """Drives one dock: only while it is visible, one question at a time, the newest scene next.
+
+    A running question is not interrupted by a newer scene, or a live run would never be shown; the newer scene is
+    asked about as soon as the answer is there.
+    """
+
+    failed = Signal(str)
+
+    def __init__(self, dock: Dock, slots: Slots, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.dock = dock
+        self._worker: Worker | None = None
+        self._slots = slots
+        self._scene: Scene | None = None
+        self._asked: tuple[Any, ...] | None = None
+        self._computing = False
+        self._dirty = False
+        dock.installEventFilter(self)
+        dock.asks.connect(self._update)
+
+    def show_scene(self, scene: Scene) -> None:
+        """Take a newer scene."""
+        self._scene = scene
+        self._update()
+
+    def close(self) -> None:
+        """Stop and join the thread."""
+        if self._worker is not None:
+            self._worker.close()
+
+    @property
+    def busy(self) -> bool:
+        """Whether an answer is under way."""
+        return self._computing
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Catch up when the dock becomes visible."""
+        if event.type() == QEvent.Type.Show:
+            self._update()
+        return super().eventFilter(watched, event)
+
+    def _update(self) -> None:
+        if self._scene is None or not self.dock.isVisible():
+            return
+        if self._computing:
+            self._dirty = True
+            return
+        question = self.dock.question(self._scene)
+        if question is None:
+            self._asked = None
+            self.dock.present_nothing(NOTHING_YET)
+            return
+        if question.key == self._asked:
+            return
+        self._asked = question.key
+        self._ask(question)
+
+    def _ask(self, question: Question) -> None:
+        if self._worker is None:
+            self._worker = Worker(self.dock.name, self._slots, self)
+            self._worker.finished.connect(self._answered)
+            self._worker.failed.connect(self._refused)
+
+        def work(task: Task) -> Any:
+            return question.compute(task.should_stop)
+
+        self._computing = True
+        self._worker.submit(work)
+
+    def _answered(self, answer: Any) -> None:
+        self._computing = False
+        self.dock.present(answer)
+        self._again()
+
+    def _refused(self, sentence: str) -> None:
+        self._computing = False
+        self.dock.present_nothing(sentence)
+        self._again()
+
+    def _again(self) -> None:
+        if self._dirty:
+            self._dirty = False
+            self._update()

@@ -1,0 +1,144 @@
+"""Opening, dropping, pasting and saving: what is read and written in the background."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from texlab.session import Column, Sample, Session, State
+from texlab_core.inputs import Crop, ImageInput
+
+if TYPE_CHECKING:
+    from texlab.controller import Controller
+    from texlab.jobs import Task
+    from texlab.settings import Settings
+    from texlab_core.run import Job
+    from texlab_core.steps import Result
+
+COMFORTABLE_SIDE = 512
+IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """What a file turned out to be: an image, or a saved result with the job that made it."""
+
+    image: ImageInput
+    path: str | None
+    job: Job | None = None
+
+
+def open_source(source: str | bytes) -> Opened:
+    """Read an image or a saved result (a path, gallery:NAME, or the bytes of a file); runs in a thread.
+
+    Raises
+    ------
+    InputError
+        One sentence when it is neither.
+    """
+    from texlab_core.record import has_recipe, read_recipe
+
+    from texlab_core.images import as_exemplar
+
+    path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
+    if path is not None or isinstance(source, bytes):
+        where = source if isinstance(source, bytes) else Path(source)
+        if has_recipe(where):
+            job = read_recipe(where).job()
+            image = job.inputs.get("exemplar")
+            if isinstance(image, ImageInput):
+                return Opened(image, None, job)
+    return Opened(as_exemplar(source), path)
+
+
+def sample_of(image: ImageInput, path: str | None) -> Sample:
+    """Return the sample for an image: a photograph is scaled to a comfortable size at first."""
+    if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):
+        whole = ImageInput(image.origin.pixels, image.name, image.sha256 + ":source", None, image.notes)
+        return Sample(whole, image.origin.scale, image.origin.crop, path)
+    side = max(image.size)
+    scale = 1.0 if side <= COMFORTABLE_SIDE else round(COMFORTABLE_SIDE / side, 3)
+    return Sample(image, scale, None, path)
+
+
+def restored(state: State, opened: Opened) -> tuple[State, int]:
+    """Return the state in which a saved result's job runs, and the id of its column.
+
+    The first column with the same method takes the parameters; without one, a column is added.
+    """
+    job = opened.job
+    assert job is not None
+    extra = tuple((name, value) for name, value in job.inputs.items() if name != "exemplar")
+    state = dataclasses.replace(state, sample=sample_of(opened.image, None), seed=job.seed, size=job.size)
+    for column in state.columns:
+        if column.method == job.method:
+            changed = dataclasses.replace(column, params=job.params, inputs=extra)
+            return state.with_column(changed), column.id
+    added = Column(state.next_id, job.method, job.params, extra)
+    return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
+
+
+class Opener:
+    """Opens and saves through the controller's background workers."""
+
+    def __init__(self, session: Session, controller: Controller, settings: Settings) -> None:
+        self._session = session
+        self._controller = controller
+        self._settings = settings
+        self._newest = 0
+
+    def open(self, source: str | bytes, *, crop: Crop | None = None, scale: float | None = None) -> None:
+        """Open a path, gallery:NAME or the bytes of a file; the newest of several wins."""
+        self._newest += 1
+        number = self._newest
+
+        def work(task: Task) -> Opened:
+            return open_source(source)
+
+        def done(opened: Opened) -> None:
+            if number == self._newest:
+                self._take(opened, crop, scale)
+
+        self._controller.once("open", work, done)
+
+    def _take(self, opened: Opened, crop: Crop | None, scale: float | None) -> None:
+        if opened.job is not None:
+            state, column_id = restored(self._session.state, opened)
+            self._session.apply(state, "restore a result")
+            self._session.select(column_id)
+            self._controller.said.emit("The saved result's exemplar, parameters, size and seed were restored.")
+            return
+        if opened.path is not None:
+            self._settings.add_recent(opened.path)
+        sample = sample_of(opened.image, opened.path)
+        if scale is not None:
+            sample = dataclasses.replace(sample, scale=scale, crop=crop)
+        self._session.set_sample(sample)
+        if opened.image.notes:
+            self._controller.said.emit(" ".join(opened.image.notes))
+
+    def use_as_exemplar(self, result: Result) -> None:
+        """Make a result the exemplar."""
+
+        def work(task: Task) -> ImageInput:
+            from texlab_core.images import as_exemplar
+
+            return as_exemplar(result.image, name=f"{result.job.method} result")
+
+        self._controller.once("use", work, lambda image: self._session.set_sample(Sample(image)))
+
+    def save(self, result: Result, path: str) -> None:
+        """Save a result with its recipe."""
+
+        def work(task: Task) -> str:
+            from texlab_core.record import save_result
+
+            save_result(result, path)
+            return path
+
+        def done(saved: Any) -> None:
+            self._controller.said.emit(f"Saved {saved} with its recipe.")
+
+        self._controller.once("save", work, done)

@@ -1,0 +1,103 @@
+"""What is remembered between two starts: window, theme, recent files and the session."""
+
+from __future__ import annotations
+
+import json
+import logging
+from typing import TYPE_CHECKING, Any
+
+from texlab.paths import config_dir
+from texlab_core.errors import InputError
+from texlab_core.files import write_whole
+from texlab_core.registry import methods
+from texlab_core.run import check_seed, check_size
+
+if TYPE_CHECKING:
+    from texlab.session import State
+
+log = logging.getLogger(__name__)
+
+MAX_RECENT = 10
+MAX_COLUMNS = 12
+
+
+class Settings:
+    """A small JSON file that may be missing, old or broken: then the defaults hold."""
+
+    def __init__(self) -> None:
+        self._path = config_dir() / "settings.json"
+        self.values: dict[str, Any] = {}
+        try:
+            loaded = json.loads(self._path.read_text(encoding="utf-8"))
+            if isinstance(loaded, dict):
+                self.values = loaded
+        except FileNotFoundError:
+            pass
+        except (OSError, ValueError, RecursionError) as error:
+            log.warning("The settings could not be read and are left aside: %s", error)
+
+    def text(self, name: str, default: str = "") -> str:
+        """Return a text, or the default."""
+        value = self.values.get(name)
+        return value if isinstance(value, str) else default
+
+    @property
+    def recent(self) -> list[str]:
+        """Paths opened lately, the latest first."""
+        value = self.values.get("recent")
+        listed = value if isinstance(value, list) else []
+        return [path for path in listed if isinstance(path, str)][:MAX_RECENT]
+
+    def add_recent(self, path: str) -> None:
+        """Put a path first among the recent ones."""
+        self.values["recent"] = [path, *(other for other in self.recent if other != path)][:MAX_RECENT]
+
+    def save(self) -> None:
+        """Write the file; a failure is logged, never shown: nothing the user made is lost by it."""
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(self._path, json.dumps(self.values, indent=1).encode())
+        except OSError as error:
+            log.warning("The settings could not be saved: %s", error)
+
+
+def session_to_json(state: State, selected: int) -> dict[str, Any]:
+    """Return the session as JSON: names and numbers, not pixels."""
+    sample = None
+    if state.sample is not None:
+        crop = state.sample.crop
+        sample = {
+            "name": state.sample.source.name,
+            "path": state.sample.path,
+            "scale": state.sample.scale,
+            "crop": None if crop is None else [crop.top, crop.left, crop.height, crop.width],
+        }
+    places = [column.id for column in state.columns]
+    return {
+        "sample": sample,
+        "columns": [{"method": column.method, "params": column.params.to_json()} for column in state.columns],
+        "seed": state.seed,
+        "size": list(state.size),
+        "selected": places.index(selected) if selected in places else 0,
+    }
+
+
+def columns_from_json(data: Any) -> list[tuple[str, Any]]:
+    """Return the (method, parameters) of a saved session; what does not fit any more is left out."""
+    found = []
+    listed = data.get("columns") if isinstance(data, dict) else None
+    for each in (listed if isinstance(listed, list) else [])[:MAX_COLUMNS]:
+        try:
+            method = methods()[each["method"]]
+            found.append((method.id, method.params.from_json(each["params"])))
+        except (InputError, KeyError, TypeError) as error:
+            log.warning("A column of the last session was left out: %s", error)
+    return found
+
+
+def seed_and_size(data: Any) -> tuple[int, tuple[int, int]]:
+    """Return seed and size of a saved session, or the defaults."""
+    try:
+        return check_seed(data["seed"]), check_size(tuple(data["size"]))
+    except (InputError, KeyError, TypeError):
+        return 1, (256, 256)

@@ -1,0 +1,1 @@
+"""Widgets that show frozen data and emit intentions; none writes the session, none computes."""

@@ -1,0 +1,122 @@
+"""The help window: Markdown pages of resources/help, with figures and links to the knobs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QUrl, Signal
+from PySide6.QtGui import QImage, QTextDocument
+from PySide6.QtWidgets import (
+    QDialog,
+    QHBoxLayout,
+    QListWidget,
+    QListWidgetItem,
+    QTextBrowser,
+    QVBoxLayout,
+    QWidget,
+)
+
+from texlab_core.resources import resource
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QShowEvent
+
+FIGURE_WIDTH = 720
+
+
+class HelpBrowser(QTextBrowser):
+    """Shows pages and figures from the resources, wherever they are packed."""
+
+    knob_wanted = Signal(str, str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("help-page")
+        self.setOpenLinks(False)
+        self.anchorClicked.connect(self._follow)
+        self.page = ""
+
+    def show_page(self, name: str) -> bool:
+        """Show ``resources/help/NAME.md``; False when there is none."""
+        try:
+            text = resource(f"help/{name}.md").read_text(encoding="utf-8")
+        except (OSError, ValueError):
+            return False
+        self.page = name
+        self.setMarkdown(text)
+        return True
+
+    def loadResource(self, kind: int, url: QUrl | str) -> object:
+        """Load a figure from the resources."""
+        path = url.toString() if isinstance(url, QUrl) else url
+        if kind == QTextDocument.ResourceType.ImageResource.value and ".." not in path:
+            try:
+                image = QImage.fromData(resource(f"help/{path}").read_bytes())
+            except (OSError, ValueError):
+                return super().loadResource(kind, url)
+            if image.width() > FIGURE_WIDTH:
+                from PySide6.QtCore import Qt
+
+                image = image.scaledToWidth(FIGURE_WIDTH, Qt.TransformationMode.SmoothTransformation)
+            return image
+        return super().loadResource(kind, url)
+
+    def _follow(self, url: QUrl) -> None:
+        text = url.toString()
+        if text.startswith("knob:"):
+            method, _, knob = text[5:].partition("/")
+            self.knob_wanted.emit(method, knob)
+        elif text.endswith(".md") and "/" not in text:
+            self.show_page(text[:-3])
+        elif text.startswith("#"):
+            self.scrollToAnchor(text[1:])
+
+
+class HelpWindow(QDialog):
+    """The pages on the left, the page on the right."""
+
+    knob_wanted = Signal(str, str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("help-window")
+        self.setWindowTitle("TexLab help")
+        self.resize(1000, 720)
+        self.list = QListWidget()
+        self.list.setObjectName("help-list")
+        self.list.setMaximumWidth(220)
+        self.browser = HelpBrowser()
+        layout = QHBoxLayout()
+        layout.addWidget(self.list)
+        layout.addWidget(self.browser, 1)
+        outer = QVBoxLayout(self)
+        outer.addLayout(layout)
+        self.list.currentItemChanged.connect(lambda item, _: item and self.browser.show_page(item.data(256)))
+        self.browser.knob_wanted.connect(self.knob_wanted)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """List the pages when the window is first seen."""
+        super().showEvent(event)
+        if self.list.count() == 0:
+            for name, title in help_pages():
+                item = QListWidgetItem(title)
+                item.setData(256, name)
+                self.list.addItem(item)
+
+    def open_page(self, name: str) -> None:
+        """Show the window with a page; the first page when there is none of that name."""
+        self.show()
+        self.raise_()
+        if not self.browser.show_page(name):
+            self.browser.show_page("index")
+
+
+def help_pages() -> list[tuple[str, str]]:
+    """Return (name, title) of every page, the index first."""
+    found = []
+    for entry in resource("help").iterdir():
+        if entry.name.endswith(".md"):
+            first = entry.read_text(encoding="utf-8").splitlines()[:1]
+            title = first[0].lstrip("# ").strip() if first else entry.name
+            found.append((entry.name[:-3], title))
+    return sorted(found, key=lambda page: (page[0] != "index", page[1].lower()))

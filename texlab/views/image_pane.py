@@ -1,0 +1,264 @@
+"""A pane that shows one image; all panes share pan and zoom through :class:`ViewLink`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QEvent, QPoint
+    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
+    from PySide6.QtWidgets import QWidget
+
+    from texlab.scene import Picture
+    from texlab.theme import Theme
+
+
+class ViewLink:
+    """One rectangle of image coordinates that every pane shows.
+
+    ``setXLink`` before the first image breaks the automatic range, so the panes share a rectangle instead.
+    """
+
+    def __init__(self) -> None:
+        self._panes: list[ImagePane] = []
+        self._fitted = True
+        self._extent = (1, 1)
+
+    def join(self, pane: ImagePane) -> None:
+        """Make a pane follow the others."""
+        self._panes.append(pane)
+
+    def leave(self, pane: ImagePane) -> None:
+        """Let a pane go."""
+        if pane in self._panes:
+            self._panes.remove(pane)
+
+    def moved(self, source: ImagePane) -> None:
+        """Show in all panes what the user made one show."""
+        self._fitted = False
+        rectangle = source.view_rect()
+        for pane in self._panes:
+            if pane is not source:
+                pane.show_rect(rectangle)
+
+    def set_extent(self, height: int, width: int) -> None:
+        """Say how large the largest picture is or will be (a draft may be smaller for a moment)."""
+        if (height, width) != self._extent:
+            self._extent = (height, width)
+            self.extent_changed()
+
+    def extent_changed(self) -> None:
+        """Fit again when a picture changed its size and the user has not zoomed."""
+        if self._fitted:
+            self.fit()
+
+    def fit(self) -> None:
+        """Show the largest picture whole, and the others at the same scale."""
+        self._fitted = True
+        factor = 2 if any(pane.tiled for pane in self._panes) else 1
+        rectangle = QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
+        for pane in self._panes:
+            pane.show_rect(rectangle)
+
+    def actual_size(self) -> None:
+        """Show one image pixel per screen pixel around the present centre."""
+        self._fitted = False
+        for pane in self._panes:
+            pane.show_rect(pane.actual_rect())
+
+    def zoom(self, factor: float) -> None:
+        """Enlarge around the centre."""
+        self._fitted = False
+        for pane in self._panes:
+            centre = pane.view_rect().center()
+            rectangle = pane.view_rect()
+            size = rectangle.size() / factor
+            pane.show_rect(QRectF(centre - QPointF(size.width() / 2, size.height() / 2), size))
+
+
+class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Shows an (H, W, 3) uint8 picture with nearest-neighbour enlargement.
+
+    ``hovered(row, column)`` gives the image pixel under the cursor (modulo the image when tiled), (-1, -1)
+    outside; ``clicked(row, column)`` likewise.
+    """
+
+    hovered = Signal(int, int)
+    clicked = Signal(int, int)
+    painted = Signal()
+
+    def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
+        super().__init__(parent, background=None)
+        self._link = link
+        self._tiled = False
+        self._picture: Picture | None = None
+        self._press: QPoint | None = None
+        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
+        self.view.setMouseMode(pg.ViewBox.PanMode)
+        self.setCentralItem(self.view)
+        self.item = pg.ImageItem(levels=None)
+        self.view.addItem(self.item)
+        self._copies: list[Any] = []
+        self._overlay: Any = None
+        self.setMouseTracking(True)
+        self.setMinimumSize(60, 60)
+        self.view.sigRangeChangedManually.connect(self._moved)
+        self.view.sigResized.connect(lambda _: self._link.extent_changed())
+        self.scene().sigMouseMoved.connect(self._pointer_moved)
+        link.join(self)
+
+    @property
+    def picture(self) -> Picture | None:
+        """What is shown."""
+        return self._picture
+
+    @property
+    def tiled(self) -> bool:
+        """Whether the picture is shown 2 x 2."""
+        return self._tiled
+
+    @property
+    def extent(self) -> tuple[int, int] | None:
+        """Height and width of what is shown, with its copies when tiled."""
+        if self._picture is None:
+            return None
+        factor = 2 if self._tiled else 1
+        return self._picture.shape[0] * factor, self._picture.shape[1] * factor
+
+    def set_picture(self, picture: Picture | None) -> None:
+        """Show a picture, or nothing."""
+        self._picture = picture
+        if picture is None:
+            self.item.clear()
+        else:
+            self.item.setImage(picture, autoLevels=False, levels=None)
+        for copy in self._copies:
+            if picture is None:
+                copy.clear()
+            else:
+                copy.setImage(picture, autoLevels=False, levels=None)
+        self._place_copies()
+        self._choose_filter()
+        self.painted.emit()
+
+    def set_tiled(self, tiled: bool) -> None:
+        """Show the picture 2 x 2 so that seams are seen."""
+        if tiled == self._tiled:
+            return
+        self._tiled = tiled
+        for copy in self._copies:
+            self.view.removeItem(copy)
+        self._copies = [pg.ImageItem(levels=None) for _ in range(3)] if tiled else []
+        for copy in self._copies:
+            self.view.addItem(copy)
+        self.set_picture(self._picture)
+        self._link.extent_changed()
+
+    def set_overlay(self, picture: Picture | None, opacity: float = 0.6) -> None:
+        """Lay a coloured map of the same size over the picture, or take it away."""
+        if picture is None:
+            if self._overlay is not None:
+                self.view.removeItem(self._overlay)
+                self._overlay = None
+            return
+        if self._overlay is None:
+            self._overlay = pg.ImageItem(levels=None)
+            self._overlay.setZValue(10)
+            self.view.addItem(self._overlay)
+        self._overlay.setOpacity(opacity)
+        self._overlay.setImage(picture, autoLevels=False, levels=None)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.setBackground(QColor(theme.canvas))
+
+    def view_rect(self) -> QRectF:
+        """Return the visible rectangle in image coordinates."""
+        return QRectF(self.view.viewRect())
+
+    def show_rect(self, rectangle: QRectF) -> None:
+        """Make a rectangle of image coordinates visible."""
+        self.view.setRange(rectangle, padding=0, disableAutoRange=True)
+        self._choose_filter()
+
+    def actual_rect(self) -> QRectF:
+        """Return the rectangle that shows one image pixel per screen pixel."""
+        centre = self.view_rect().center()
+        ratio = self.devicePixelRatioF()
+        width, height = self.view.width() * ratio, self.view.height() * ratio
+        return QRectF(centre.x() - width / 2, centre.y() - height / 2, width, height)
+
+    def to_widget(self, row: float, column: float) -> QPointF:
+        """Return where an image position is painted, in widget coordinates."""
+        return QPointF(self.mapFromScene(self.view.mapViewToScene(QPointF(column, row))))
+
+    def detach(self) -> None:
+        """Leave the link before the pane is deleted."""
+        self._link.leave(self)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit again when the user has not zoomed."""
+        super().resizeEvent(event)
+        self._link.extent_changed()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Tell that the cursor has left."""
+        super().leaveEvent(event)
+        self.hovered.emit(-1, -1)
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Remember where the button went down."""
+        self._press = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseReleaseEvent(self, event: Any) -> None:
+        """Take a press and release on one place as a click."""
+        super().mouseReleaseEvent(event)
+        here = event.position().toPoint()
+        left = event.button() == Qt.MouseButton.LeftButton
+        if left and self._press is not None and (here - self._press).manhattanLength() <= 3:
+            self.clicked.emit(*self._pixel(self.mapToScene(here)))
+        self._press = None
+
+    def mouseDoubleClickEvent(self, event: Any) -> None:
+        """Fit all panes."""
+        super().mouseDoubleClickEvent(event)
+        self._link.fit()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Leave context menus to the column."""
+        event.ignore()
+
+    def _place_copies(self) -> None:
+        if self._picture is None:
+            return
+        height, width = self._picture.shape[:2]
+        for copy, (row, column) in zip(self._copies, ((0, 1), (1, 0), (1, 1)), strict=False):
+            copy.setPos(column * width, row * height)
+
+    def _moved(self, *_: object) -> None:
+        self._choose_filter()
+        self._link.moved(self)
+
+    def _choose_filter(self) -> None:
+        # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
+        pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
+        self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)
+
+    def _pixel(self, scene_point: QPointF) -> tuple[int, int]:
+        extent = self.extent
+        if extent is None or self._picture is None:
+            return -1, -1
+        point = self.view.mapSceneToView(scene_point)
+        row, column = int(np.floor(point.y())), int(np.floor(point.x()))
+        if not (0 <= row < extent[0] and 0 <= column < extent[1]):
+            return -1, -1
+        return row % self._picture.shape[0], column % self._picture.shape[1]
+
+    def _pointer_moved(self, scene_point: QPointF) -> None:
+        self.hovered.emit(*self._pixel(scene_point))
