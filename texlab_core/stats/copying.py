@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _PIXELS_AT_ONCE = 2**18
+ValueT = TypeVar("ValueT")
 
 
 def continuous_share(source_map: NDArray[np.int32]) -> float:
@@ -31,12 +32,20 @@ def continuous_share(source_map: NDArray[np.int32]) -> float:
 
     Reference: the measure of copying behind De Bonet 1997, figs. 11 and 12 (how much was rearranged).
     """
+    return _drive(continuous_share_steps(source_map))
+
+
+def continuous_share_steps(source_map: NDArray[np.int32]) -> Generator[float, None, float]:
+    """Do what :func:`continuous_share` does in parts of a few milliseconds, yielding the share done (0 .. 1)."""
     from texlab_core.kernels.regions import count_continuous
 
     source = _checked(source_map)
     height, width = source.shape[:2]
     pairs = height * (width - 1) + width * (height - 1)
-    count = sum(count_continuous(source, first, last) for first, last in _row_blocks(height, width))
+    count = 0
+    for first, last in _row_blocks(height, width):
+        count += count_continuous(source, first, last)
+        yield last / height
     return count / pairs if pairs else 1.0
 
 
@@ -56,13 +65,7 @@ def copied_regions(source_map: NDArray[np.int32]) -> tuple[NDArray[np.int32], ND
     sizes
         (areas + 1,) int64: ``sizes[label]`` in pixels; ``sizes[0]`` counts the pixels that continue none.
     """
-    steps = copied_regions_steps(source_map)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            labels, sizes = end.value
-            return labels, sizes
+    return _drive(copied_regions_steps(source_map))
 
 
 def copied_regions_steps(
@@ -98,6 +101,15 @@ def largest_copy(sizes: NDArray[np.int64]) -> float:
     """Return the largest copied piece as a share of the picture, from the sizes of :func:`copied_regions`."""
     total = int(sizes.sum())
     return float(sizes[1]) / total if sizes.size > 1 else 1.0 / total if total else 0.0
+
+
+def _drive(steps: Generator[float, None, ValueT]) -> ValueT:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            value: ValueT = end.value
+            return value
 
 
 def _row_blocks(height: int, width: int) -> list[tuple[int, int]]:

@@ -1,0 +1,1 @@
+"""De Bonet's multiresolution sampling: analysis, thresholds, candidate sets, collapse, explanation."""

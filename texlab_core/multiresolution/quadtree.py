@@ -1,0 +1,94 @@
+"""Quadtree order of the locations of a pyramid: the children of location p are 4p .. 4p + 3.
+
+The coarsest level is in raster order; below it, two bits per level say which of the four children is meant
+(2 · lower row + right column). Parent, children and parity are then shifts, and the part of the picture under a
+run of locations is a run of locations on every finer level.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """The locations of all levels of a pyramid.
+
+    Parameters
+    ----------
+    rows, columns
+        Size of the coarsest level.
+    depth
+        Index N of the coarsest level; level 0 is the finest.
+    """
+
+    rows: int
+    columns: int
+    depth: int
+
+    @classmethod
+    def covering(cls, height: int, width: int, depth: int) -> Grid:
+        """Return the smallest grid of this depth whose finest level holds height x width pixels."""
+        side = 2**depth
+        return cls(-(-height // side), -(-width // side), depth)
+
+    def shape(self, level: int) -> tuple[int, int]:
+        """Height and width of a level."""
+        shift = self.depth - level
+        return self.rows << shift, self.columns << shift
+
+    def count(self, level: int) -> int:
+        """Return the number of locations of a level."""
+        return (self.rows * self.columns) << 2 * (self.depth - level)
+
+    def parts(self, level: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Return what row and column contribute to a location: (height,) and (width,) int32, to be added."""
+        height, width = self.shape(level)
+        shift = self.depth - level
+        row, column = np.arange(height), np.arange(width)
+        inside = 2**shift - 1
+        row_part = ((row >> shift) * self.columns << 2 * shift) + 2 * _spread(row & inside, shift)
+        column_part = (column >> shift << 2 * shift) + _spread(column & inside, shift)
+        return row_part.astype(np.int32), column_part.astype(np.int32)
+
+    def order(self, level: int) -> NDArray[np.int32]:
+        """Return the location of every pixel of a level, (height, width) int32."""
+        row_part, column_part = self.parts(level)
+        return row_part[:, None] + column_part[None, :]
+
+    def coordinates(self, level: int) -> NDArray[np.int32]:
+        """Return row and column of every location of a level, (count, 2) int32."""
+        height, width = self.shape(level)
+        places = np.empty((height * width, 2), np.int32)
+        order = self.order(level)
+        places[order, 0] = np.arange(height, dtype=np.int32)[:, None]
+        places[order, 1] = np.arange(width, dtype=np.int32)[None, :]
+        return places
+
+    def location(self, level: int, row: int, column: int) -> int:
+        """Return the location at a row and column of a level."""
+        shift = self.depth - level
+        inside = 2**shift - 1
+        cell = (row >> shift) * self.columns + (column >> shift)
+        low = 2 * _spread(np.array([row & inside]), shift) + _spread(np.array([column & inside]), shift)
+        return (cell << 2 * shift) + int(low[0])
+
+    def to_quadtree(self, level: int, raster: NDArray[np.generic]) -> NDArray[np.generic]:
+        """Reorder (height, width, ...) into (count, ...)."""
+        out = np.empty((self.count(level), *raster.shape[2:]), raster.dtype)
+        out[self.order(level)] = raster
+        return out
+
+
+def _spread(value: NDArray[np.int64], bits: int) -> NDArray[np.int64]:
+    """Put a zero bit between any two bits."""
+    out = np.zeros_like(value)
+    for bit in range(bits):
+        out |= (value >> bit & 1) << 2 * bit
+    return out
