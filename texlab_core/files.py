@@ -18,12 +18,13 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     InputError
         When it cannot be written; what was there before stays as it was.
     """
-    # A link keeps pointing to its file, which is replaced.
-    target = Path(os.path.realpath(path))
-    temporary = target.with_name(f".texlab-{secrets.token_hex(8)}.tmp")
+    temporary: Path | None = None
     try:
+        # A link keeps pointing to its file, which is replaced.
+        target = Path(os.path.realpath(path))
         if target.is_dir():
             raise IsADirectoryError(None, "it is a folder")
+        temporary = target.with_name(f".texlab-{secrets.token_hex(8)}.tmp")
         with open(temporary, "xb") as file:
             file.write(data)
             file.flush()
@@ -33,5 +34,6 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{os.fspath(path)}: cannot be written ({reason}).") from error
     finally:
-        with contextlib.suppress(OSError, ValueError):
-            temporary.unlink(missing_ok=True)
+        if temporary is not None:
+            with contextlib.suppress(OSError):
+                temporary.unlink(missing_ok=True)

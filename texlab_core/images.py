@@ -62,11 +62,11 @@ def as_exemplar(
         if crop is None and scale == 1.0:
             return source if name is None else _renamed(source, name)
         whole = source.pixels if source.origin is None else source.origin.pixels
-        return _prepare(whole, source.name if name is None else name, crop, scale, source.notes)
+        return take(whole, source.name if name is None else name, crop, scale, source.notes)
     decoded, name = _load(source, name)
     notes = list(decoded.notes)
     pixels = _unit_range(decoded, _check_level(background), name, notes)
-    return _prepare(pixels, name, crop, scale, tuple(notes))
+    return take(pixels, name, crop, scale, tuple(notes))
 
 
 def _renamed(source: ImageInput, name: str) -> ImageInput:
@@ -180,7 +180,10 @@ def _is_gray(pixels: FloatImage) -> bool:
     return bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())
 
 
-def _prepare(pixels: FloatImage, name: str, crop: Crop | None, scale: float, notes: tuple[str, ...]) -> ImageInput:
+def take(
+    pixels: FloatImage, name: str, crop: Crop | None = None, scale: float = 1.0, notes: tuple[str, ...] = ()
+) -> ImageInput:
+    """Scale and crop pixels that are float32 in [0, 1] already, (H, W, 1 | 3); see :func:`as_exemplar`."""
     source = _sealed(pixels)
     check_pixels(source.shape[1], source.shape[0], name)
     scaled = _scaled(source, scale, name)

@@ -110,7 +110,8 @@ def test_installed_and_zipped_resources_are_found_from_another_folder(tmp_path, 
         zipfile.ZipFile(place).extractall(tmp_path / "site")
         place = tmp_path / "site"
     code = (
-        f"import sys; sys.path[0] = {str(place)!r}; from texlab_core.gallery import find_entry, __file__ as where; "
+        f"import sys; sys.path[0] = {str(place)!r}; "
+        "from texlab_core.gallery import find_entry, __file__ as where; "
         f"assert where.startswith({str(place)!r}); "
         "assert find_entry('structured-pebbles').read()[:4] == b'\\x89PNG'"
     )
@@ -132,6 +133,6 @@ def test_missing_resources_are_one_clear_sentence(tmp_path, monkeypatch):
 
 def test_a_missing_file_is_one_clear_sentence(monkeypatch, tmp_path):
     monkeypatch.setattr("texlab_core.gallery.resource", lambda path: tmp_path / path)
+    entry = find_entry("structured-pebbles")
     with pytest.raises(ImageError, match=r"structured-pebbles\.png is missing from the program's gallery"):
-        gallery_entry = next(entry for entry in gallery() if entry.name == "structured-pebbles")
-        gallery_entry.read()
+        entry.read()

@@ -1,0 +1,547 @@
+"""Results as files and back: redo gives the same bits from the file alone, and hostile files do nothing."""
+
+import base64
+import io
+import json
+import math
+import re
+import zlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from PIL import Image
+
+from tests.core.toy import NoiseParams, noise_method
+from texlab_core import registry
+from texlab_core.embedding import MAX_EMBEDDED, pack_pixels, unpack_pixels
+from texlab_core.errors import InputError, RecipeError
+from texlab_core.image_writing import encode_png, write_image
+from texlab_core.images import as_exemplar
+from texlab_core.inputs import ArraysInput, Crop, DataInput
+from texlab_core.png_text import with_text
+from texlab_core.recipes import recipe_json
+from texlab_core.record import read_recipe, save_result, summary
+from texlab_core.registry import EXEMPLAR, InputSpec
+from texlab_core.run import Job, run
+from texlab_core.steps import Curve
+
+METHOD = "toy-recipe"
+INPUTS = (
+    EXEMPLAR,
+    InputSpec("mask", "Where.", required=False),
+    InputSpec("code", "Numbers.", kind="data", required=False),
+    InputSpec("state", "Arrays.", kind="arrays", required=False),
+)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def method():
+    """Register a small method for this module."""
+    registry.methods()
+    registry._METHODS[METHOD] = noise_method(id=METHOD, title="Toy recipe", inputs=INPUTS)
+    registry.methods.cache_clear()
+    yield
+    del registry._METHODS[METHOD]
+    registry.methods.cache_clear()
+
+
+def noise(height=24, width=20, channels=3, seed=0):
+    """Floats that no integer format holds."""
+    return np.random.default_rng(seed).random((height, width, channels)).astype(np.float32)
+
+
+def levels(peak=255, **options):
+    return (np.rint(noise(**options).astype(np.float64) * peak) / peak).astype(np.float32)
+
+
+def result_of(exemplar, **changes):
+    given = {"exemplar": exemplar} | changes.pop("inputs", {})
+    fields = {"method": METHOD, "inputs": given, "params": NoiseParams(rounds=2), "size": (9, 13), "seed": 5}
+    return run(Job(**(fields | changes)))
+
+
+def recipe_data(**changes):
+    """Return the recipe of a small result as JSON data, with changes."""
+    data = json.loads(json.dumps(recipe_json(result_of(as_exemplar(levels(), name="wall.png")))))
+    return data | changes
+
+
+def read(data):
+    text = data if isinstance(data, str) else json.dumps(data)
+    return read_recipe(with_text(encode_png(np.zeros((2, 2), np.uint8)), {"texlab": text}))
+
+
+# Round trips
+
+
+@pytest.mark.parametrize("kind", ["8 bits", "16 bits", "floats"])
+@pytest.mark.parametrize(
+    "taken", [{}, {"scale": 0.5}, {"crop": Crop(3, 4, 10, 12)}, {"scale": 0.75, "crop": Crop(1, 2, 9, 8)}]
+)
+@pytest.mark.parametrize("channels", [1, 3])
+def test_redo_from_the_file_alone_gives_the_same_bits(tmp_path, kind, taken, channels):
+    values = {"8 bits": levels, "16 bits": lambda **o: levels(65535, **o), "floats": noise}[kind](
+        channels=channels
+    )
+    exemplar = as_exemplar(values, name="wall.png", **taken)
+    result = result_of(exemplar)
+    save_result(result, tmp_path / "out.png", bits=16)
+    recipe = read_recipe(tmp_path / "out.png")
+    assert recipe.missing == ()
+    job = recipe.job()
+    restored = job.inputs["exemplar"]
+    assert restored.pixels.tobytes() == exemplar.pixels.tobytes()
+    assert restored.sha256 == exemplar.sha256
+    assert (restored.name, restored.origin.scale, restored.origin.crop) == (
+        "wall.png",
+        exemplar.origin.scale,
+        exemplar.origin.crop,
+    )
+    assert restored.origin.pixels.tobytes() == exemplar.origin.pixels.tobytes()
+    assert (job.params, job.size, job.seed) == (result.job.params, result.job.size, result.job.seed)
+    assert run(job).image.tobytes() == result.image.tobytes()
+
+
+@pytest.mark.parametrize("name", ["out.png", "out.tif", "out.tiff", "out.jpg", "out.JPEG"])
+def test_every_format_carries_its_recipe(tmp_path, name):
+    result = result_of(as_exemplar("gallery:structured-pebbles"))
+    save_result(result, tmp_path / name)
+    again = run(read_recipe(str(tmp_path / name)).job())
+    assert again.image.tobytes() == result.image.tobytes()
+    assert as_exemplar(tmp_path / name).size == (9, 13)
+    files = {each.name for each in tmp_path.iterdir()}
+    assert files == {name} | ({"out.texlab.json"} if "jp" in name.lower() else set())
+    for each in files:
+        assert read_recipe(tmp_path / each).seed == 5
+
+
+def test_the_picture_is_the_result_and_other_programs_see_the_recipe(tmp_path):
+    result = result_of(as_exemplar(levels()))
+    save_result(result, tmp_path / "out.png")
+    picture = Image.open(io.BytesIO((tmp_path / "out.png").read_bytes()))
+    assert np.array_equal(np.asarray(picture), np.rint(result.image.astype(np.float64) * 255))
+    data = json.loads(picture.text["texlab"])
+    assert data["texlab"] == 1
+    assert data["params"] == {"rounds": 2, "spread": 0.25, "power": 1}
+    assert data["size"] == {"width": 13, "height": 9}
+    assert data["versions"] == dict(result.versions)
+    with pytest.raises(RecipeError, match="holds no recipe"):
+        read_recipe(encode_png(np.zeros((2, 2), np.uint8)))
+
+
+def test_a_recipe_also_reads_from_bytes(tmp_path):
+    result = result_of(as_exemplar(levels()))
+    for name in ("out.png", "out.tif"):
+        save_result(result, tmp_path / name)
+        assert run(read_recipe((tmp_path / name).read_bytes()).job()).image.tobytes() == result.image.tobytes()
+
+
+@settings(deadline=None)
+@given(
+    st.sampled_from([255, 65535, None]).flatmap(
+        lambda peak: hnp.arrays(
+            np.float32,
+            st.tuples(st.integers(1, 6), st.integers(1, 6), st.sampled_from([1, 3])),
+            elements=st.floats(0, 1, width=32)
+            if peak is None
+            else st.integers(0, peak).map(lambda k: float(np.float32(k) / np.float32(peak))),
+        )
+    )
+)
+def test_packing_is_lossless_to_the_bit(pixels):
+    packed = json.loads(json.dumps(pack_pixels(pixels)))
+    assert unpack_pixels(packed, "it").tobytes() == pixels.tobytes()
+
+
+def test_the_cheapest_lossless_encoding_is_chosen():
+    eight, sixteen, floats = pack_pixels(levels()), pack_pixels(levels(65535)), pack_pixels(noise())
+    assert [each["encoding"] for each in (eight, sixteen, floats)] == ["png", "png", "float32"]
+    assert base64.b64decode(eight["base64"])[24] == 8
+    assert base64.b64decode(sixteen["base64"])[24] == 16
+    # Negative zero is a bit pattern of its own, and the hash sees it.
+    assert pack_pixels(np.full((2, 2, 1), -0.0, np.float32))["encoding"] == "float32"
+
+
+def test_data_and_arrays_are_embedded_too(tmp_path):
+    code = DataInput({"mean": [1.5, 2, None, "λ"], "deep": [[[{}]]]}, "code.json")
+    state = ArraysInput(
+        {"a": np.arange(6).reshape(2, 3), "b": noise()[..., 0], "c": np.array(2.5), "d": np.zeros((0, 2), bool)},
+        "a state",
+    )
+    mask = as_exemplar(np.rint(noise(channels=1)), name="mask")
+    result = result_of(as_exemplar(levels()), inputs={"code": code, "state": state, "mask": mask})
+    save_result(result, tmp_path / "out.png")
+    job = read_recipe(tmp_path / "out.png").job()
+    assert job.inputs["code"].data == code.data
+    for name, array in state.arrays.items():
+        found = job.inputs["state"].arrays[name]
+        assert (found.dtype, found.shape, found.tobytes()) == (array.dtype, array.shape, array.tobytes())
+    assert {name: each.sha256 for name, each in job.inputs.items()} == {
+        name: each.sha256 for name, each in result.job.inputs.items()
+    }
+
+
+# What is too large to be embedded
+
+
+@pytest.fixture(scope="module")
+def photograph():
+    """Pixels whose source takes more than 2 MB, lossless."""
+    return levels(height=1000, width=900, seed=3)
+
+
+def test_a_large_source_leaves_its_pixels(tmp_path, photograph):
+    exemplar = as_exemplar(photograph, name="photo.png", scale=0.5, crop=Crop(10, 20, 64, 48))
+    save_result(result_of(exemplar), tmp_path / "out.png")
+    recipe = read_recipe(tmp_path / "out.png")
+    assert set(recipe.inputs["exemplar"].content) == {"pixels"}
+    restored = recipe.job().inputs["exemplar"]
+    assert restored.sha256 == exemplar.sha256
+    # The source itself serves as well, and so does the exemplar as it was used.
+    for given_image in (photograph, as_exemplar(photograph), exemplar):
+        assert recipe.job(given_image).inputs["exemplar"].sha256 == exemplar.sha256
+
+
+def test_what_fits_nowhere_leaves_name_and_hash(tmp_path, photograph):
+    exemplar = as_exemplar(photograph, name="photo.png")
+    result = result_of(exemplar)
+    save_result(result, tmp_path / "out.png")
+    assert (tmp_path / "out.png").stat().st_size < 10_000
+    recipe = read_recipe(tmp_path / "out.png")
+    assert [each.name for each in recipe.missing] == ["photo.png"]
+    with pytest.raises(RecipeError) as caught:
+        recipe.job()
+    assert str(caught.value) == (
+        f"The recipe lacks the exemplar photo.png (900 x 1000 pixels, SHA-256 {exemplar.sha256[:12]}...), which "
+        "was too large to be kept in the file."
+    )
+    write_image(tmp_path / "photo.png", photograph)
+    again = run(recipe.job(tmp_path / "photo.png"))
+    assert again.image.tobytes() == result.image.tobytes()
+    with pytest.raises(
+        RecipeError, match=r"^array is not the image of the recipe, which is the exemplar photo\.png"
+    ):
+        recipe.job(photograph[:-1])
+    assert recipe.job(photograph[:-1], force=True).inputs["exemplar"].size == (999, 900)
+
+
+def test_a_very_large_source_is_not_encoded_to_find_that_out(monkeypatch):
+    sizes = []
+
+    def counting(values, text=None):
+        sizes.append(values.size)
+        return encode_png(values, text)
+
+    monkeypatch.setattr("texlab_core.embedding.encode_png", counting)
+    assert pack_pixels(levels(height=3600, width=3600)) is None
+    assert sum(sizes) < 3600 * 3600
+    flat = np.zeros((3600, 3600, 3), np.float32)
+    assert len(pack_pixels(flat)["base64"]) < MAX_EMBEDDED
+
+
+def test_large_or_deep_data_and_arrays_leave_name_and_hash():
+    deep = []
+    for _ in range(60):
+        deep = [deep]
+    for role, given_input in (
+        ("code", DataInput("x" * (MAX_EMBEDDED + 1), "large")),
+        ("code", DataInput(deep, "deep")),
+        ("state", ArraysInput({"a": noise(1000, 900)}, "large")),
+        ("state", ArraysInput({"a": np.array(["text"])}, "of texts")),
+    ):
+        data = recipe_json(result_of(as_exemplar(levels()), inputs={role: given_input}))
+        recipe = read(data)
+        assert [each.role for each in recipe.missing] == [role]
+        with pytest.raises(RecipeError, match=f"The recipe lacks the {role} {given_input.name}"):
+            recipe.job()
+
+
+# Exemplars from outside
+
+
+def test_a_given_exemplar_replaces_the_embedded_one_only_when_it_is_the_same():
+    recipe = read(recipe_data())
+    other = as_exemplar(noise(), name="other.png")
+    with pytest.raises(RecipeError, match=r"^other\.png is not the image of the recipe"):
+        recipe.job(other)
+    assert recipe.job(other, force=True).inputs["exemplar"] is other
+    same = as_exemplar(levels(), name="copy.png")
+    assert recipe.job(same).inputs["exemplar"] is same
+    with pytest.raises(RecipeError, match="The recipe has no image called mask"):
+        recipe.job(given={"mask": same})
+    with pytest.raises(InputError, match="no such file"):
+        recipe.job("missing.png")
+
+
+def test_a_crop_that_does_not_fit_the_given_image_is_one_sentence():
+    exemplar = as_exemplar(levels(), name="wall.png", crop=Crop(5, 5, 10, 10))
+    recipe = read(recipe_json(result_of(exemplar)))
+    with pytest.raises(RecipeError, match="is not the image of the recipe"):
+        recipe.job(noise(6, 6))
+
+
+def test_params_of_other_versions():
+    data = recipe_data()
+    del data["params"]["rounds"]
+    assert read(data).params == NoiseParams()
+    data["params"]["spred"] = 0.1
+    with pytest.raises(RecipeError, match=r"parameter name: must be one of .*did you mean spread"):
+        read(data)
+    assert read(recipe_data(news="ignored")).seed == 5
+
+
+def test_other_versions_are_told():
+    data = recipe_data()
+    assert read(data).other_versions == {}
+    today = data["versions"]["numpy"]
+    data["versions"] |= {"numpy": "1.0", "abacus": "2"}
+    assert read(data).other_versions == {"numpy": ("1.0", today)}
+
+
+# Hostile files
+
+
+def entry(**changes):
+    data = recipe_data()
+    data["inputs"]["exemplar"] |= changes
+    return data
+
+
+HOSTILE = {
+    "not JSON": "{",
+    "a list": "[]",
+    "someone else's": '{"a": 1}',
+    "deep": '{"texlab": 1, "a": ' + "[" * 100_000 + "]" * 100_000 + "}",
+    "NaN": '{"texlab": 1, "seed": NaN}',
+    "a huge number": '{"texlab": 1, "seed": ' + "9" * 10_000 + "}",
+    "a repeated key": '{"texlab": 1, "texlab": 1}',
+    "a newer version": {"texlab": 2},
+    "a version that is true": {"texlab": True},
+    "no method": {"texlab": 1},
+    "an unknown method": lambda: recipe_data(method="magic"),
+    "a method of another type": lambda: recipe_data(method=["toy-recipe"]),
+    "params of another type": lambda: recipe_data(params=[1]),
+    "params out of range": lambda: recipe_data(params={"rounds": 10**9}),
+    "a param of another type": lambda: recipe_data(params={"rounds": "many"}),
+    "size of another type": lambda: recipe_data(size=[3, 4]),
+    "no size": lambda: recipe_data(size={}),
+    "a huge size": lambda: recipe_data(size={"width": 10**9, "height": 10**9}),
+    "a size of floats": lambda: recipe_data(size={"width": 3.5, "height": 2}),
+    "a seed out of range": lambda: recipe_data(seed=-1),
+    "a seed of another type": lambda: recipe_data(seed="5"),
+    "versions of another type": lambda: recipe_data(versions=["numpy"]),
+    "versions of numbers": lambda: recipe_data(versions={"numpy": 2}),
+    "inputs of another type": lambda: recipe_data(inputs=[]),
+    "no inputs": lambda: recipe_data(inputs={}),
+    "an unknown input": lambda: recipe_data(inputs={"start": {}}),
+    "an input of another type": lambda: recipe_data(inputs={"exemplar": 3}),
+    "an input of another kind": lambda: entry(kind="data"),
+    "a name of another type": lambda: entry(name=3),
+    "a name of two lines": lambda: entry(name="a\nb"),
+    "a huge name": lambda: entry(name="a" * 10_000),
+    "no hash": lambda: entry(sha256="abc"),
+    "input size of another type": lambda: entry(size={"width": "3"}),
+    "a scale of another type": lambda: entry(scale="1"),
+    "a scale out of range": lambda: entry(scale=0),
+    "a crop of another type": lambda: entry(crop=[0, 0, 3, 3]),
+    "a crop of floats": lambda: entry(crop={"top": 0.5, "left": 0, "height": 3, "width": 3}),
+    "pixels of another type": lambda: entry(source="abc"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_malformed_recipes_are_refused_in_one_sentence(name):
+    data = HOSTILE[name]
+    with pytest.raises(RecipeError) as caught:
+        read(data() if callable(data) else data)
+    sentence = str(caught.value)
+    assert sentence.startswith("The recipe of the file")
+    assert sentence.endswith(".")
+    assert "\n" not in sentence
+    assert len(sentence) < 400
+
+
+def png64(values):
+    return base64.b64encode(encode_png(values)).decode()
+
+
+def packed(raw):
+    return base64.b64encode(zlib.compress(raw, 9)).decode()
+
+
+BOMB = bytes(2**26)
+CONTENT = {
+    "no base64": {"encoding": "png", "base64": "***"},
+    "base64 of another type": {"encoding": "png", "base64": [1]},
+    "no content": {},
+    "an unknown encoding": {"encoding": "pickle", "base64": ""},
+    "not a PNG": {"encoding": "png", "base64": base64.b64encode(b"BM" + bytes(99)).decode()},
+    "a damaged PNG": {"encoding": "png", "base64": png64(np.zeros((9, 9), np.uint8))[:60]},
+    "another image": {"encoding": "png", "base64": png64(np.zeros((9, 9), np.uint8))},
+    "an image with alpha": {"encoding": "png", "base64": base64.b64encode(b"\x89PNG").decode()},
+    "no shape": {"encoding": "float32", "base64": packed(bytes(12))},
+    "a shape of another type": {"encoding": "float32", "base64": packed(bytes(12)), "shape": "1x1x3"},
+    "a shape of floats": {"encoding": "float32", "base64": packed(bytes(12)), "shape": [1.0, 1, 3]},
+    "a negative shape": {"encoding": "float32", "base64": packed(bytes(12)), "shape": [-1, -1, 3]},
+    "too few axes": {"encoding": "float32", "base64": packed(bytes(12)), "shape": [3]},
+    "too many axes": {"encoding": "float32", "base64": packed(bytes(4)), "shape": [1] * 100},
+    "too few values": {"encoding": "float32", "base64": packed(bytes(12)), "shape": [2, 2, 1]},
+    "too many values": {"encoding": "float32", "base64": packed(bytes(20)), "shape": [2, 2, 1]},
+    "a zip bomb": {"encoding": "float32", "base64": packed(BOMB), "shape": [2, 2, 1]},
+    "a huge shape": {"encoding": "float32", "base64": packed(BOMB), "shape": [2**20, 2**20, 3]},
+    "damaged values": {"encoding": "float32", "base64": "AAAA", "shape": [1, 1, 1]},
+    "NaN": {"encoding": "float32", "base64": packed(np.full(4, np.nan, "<f4").tobytes()), "shape": [2, 2, 1]},
+    "out of range": {"encoding": "float32", "base64": packed(np.full(4, 2, "<f4").tobytes()), "shape": [2, 2, 1]},
+    "a single pixel": {"encoding": "float32", "base64": packed(bytes(4)), "shape": [1, 1, 1]},
+}
+
+
+@pytest.mark.parametrize("name", CONTENT)
+@pytest.mark.parametrize("key", ["source", "pixels"])
+def test_malformed_images_are_refused_in_one_sentence(name, key):
+    data = recipe_data()
+    del data["inputs"]["exemplar"]["source"]
+    data["inputs"]["exemplar"][key] = CONTENT[name]
+    recipe = read(data)
+    with pytest.raises(RecipeError, match=r"^The recipe's input wall\.png") as caught:
+        recipe.job()
+    assert str(caught.value).endswith(".")
+    assert len(str(caught.value)) < 400
+
+
+ARRAYS = {
+    "a list": [],
+    "of another type": {"a": 3},
+    "of objects": {"a": {"dtype": "|O", "shape": [1], "base64": packed(bytes(8))}},
+    "of texts": {"a": {"dtype": "<U1", "shape": [1], "base64": packed(bytes(4))}},
+    "of records": {"a": {"dtype": "f4,f4", "shape": [1], "base64": packed(bytes(8))}},
+    "of nonsense": {"a": {"dtype": "zz", "shape": [1], "base64": packed(bytes(8))}},
+    "of no type": {"a": {"dtype": None, "shape": [1], "base64": packed(bytes(8))}},
+    "a bomb": {"a": {"dtype": "|u1", "shape": [10], "base64": packed(BOMB)}},
+    "many bombs": {str(i): {"dtype": "|u1", "shape": [2**26], "base64": packed(BOMB)} for i in range(5)},
+    "changed": {"a": {"dtype": "|u1", "shape": [1], "base64": packed(bytes(1))}},
+}
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_malformed_arrays_are_refused_in_one_sentence(name):
+    state = ArraysInput({"a": np.arange(3)}, "a state")
+    data = recipe_json(result_of(as_exemplar(levels(), name="wall.png"), inputs={"state": state}))
+    data["inputs"]["state"]["arrays"] = ARRAYS[name]
+    recipe = read(data)
+    with pytest.raises(RecipeError, match=r"^The recipe's input a state .*\.$"):
+        recipe.job()
+
+
+def test_changed_data_is_noticed_and_force_takes_it():
+    code = DataInput([1, 2, 3], "code")
+    data = recipe_json(result_of(as_exemplar(levels()), inputs={"code": code}))
+    data["inputs"]["code"]["data"] = [1, 2, 4]
+    recipe = read(data)
+    with pytest.raises(RecipeError, match=r"input code is not the one that was used \(another hash\)"):
+        recipe.job()
+    assert recipe.job(force=True).inputs["code"].data == [1, 2, 4]
+
+
+def test_what_the_method_itself_refuses_is_one_sentence(monkeypatch):
+    def check(inputs, params, size):
+        raise InputError("Toy recipe wants another exemplar.")
+
+    recipe = read(recipe_data())
+    strict = replace(registry.find_method(METHOD), check=check)
+    monkeypatch.setitem(registry._METHODS, METHOD, strict)
+    registry.methods.cache_clear()
+    with pytest.raises(RecipeError, match=r"^The recipe cannot be followed: Toy recipe wants another exemplar\.$"):
+        recipe.job()
+    monkeypatch.undo()
+    registry.methods.cache_clear()
+
+
+def test_files_without_recipe(tmp_path):
+    write_image(tmp_path / "plain.png", noise())
+    write_image(tmp_path / "plain.tif", noise())
+    write_image(tmp_path / "described.tif", noise(), text={"": "a holiday"})
+    write_image(tmp_path / "plain.jpg", noise())
+    (tmp_path / "text.txt").write_text("hello")
+    (tmp_path / "empty.png").write_bytes(b"")
+    for file in sorted(tmp_path.iterdir()):
+        with pytest.raises(
+            RecipeError, match="(?i)^" + re.escape(file.name) + " holds no recipe; only results that"
+        ):
+            read_recipe(file)
+    with pytest.raises(RecipeError, match="there is no such file"):
+        read_recipe(tmp_path / "missing.png")
+    with pytest.raises(RecipeError, match="there is no such file"):
+        read_recipe(tmp_path)
+    with pytest.raises(RecipeError):
+        read_recipe("nul\0l")
+
+
+def test_damaged_files_are_one_sentence(tmp_path):
+    result = result_of(as_exemplar(levels()))
+    for name in ("out.png", "out.tif"):
+        save_result(result, tmp_path / name)
+        whole = (tmp_path / name).read_bytes()
+        for share in (0.1, 0.5):
+            with pytest.raises(RecipeError) as caught:
+                read_recipe(whole[: int(share * len(whole))])
+            assert str(caught.value).endswith(".")
+
+
+def test_reading_never_unpickles(monkeypatch):
+    import pickle
+
+    def never(*_, **__):
+        raise AssertionError
+
+    monkeypatch.setattr(pickle, "loads", never)
+    monkeypatch.setattr(pickle, "load", never)
+    assert read(recipe_data()).job().size == (9, 13)
+
+
+def test_saving_checks_the_format_before_it_writes(tmp_path):
+    result = result_of(as_exemplar(levels()))
+    with pytest.raises(InputError, match=r"images are written as \.png"):
+        save_result(result, tmp_path / "out.webp")
+    with pytest.raises(InputError, match=r"the bits of a \.jpg file must be 8"):
+        save_result(result, tmp_path / "out.jpg", bits=16)
+    assert not list(tmp_path.iterdir())
+    save_result(result, tmp_path / "out.tif", bits="float")
+    assert np.array_equal(as_exemplar(tmp_path / "out.tif").pixels, result.image)
+
+
+# Summary
+
+
+def test_summary_is_strict_json_with_exactly_these_keys():
+    exemplar = as_exemplar(levels(), name="wall.png")
+    result = replace(
+        result_of(exemplar),
+        curves={"distance": Curve.of([1, math.nan, math.inf], "Distance", y_label="W1")},
+        measures={"w1": np.float32(0.5), "none": math.nan},
+    )
+    data = json.loads(json.dumps(summary(result, "a/out.png"), allow_nan=False))
+    assert data == {
+        "method": METHOD,
+        "parameters": {"rounds": 2, "spread": 0.25, "power": 1},
+        "size": {"width": 13, "height": 9},
+        "seed": 5,
+        "elapsed_s": result.elapsed_s,
+        "out": "a/out.png",
+        "exemplar": {"name": "wall.png", "sha256": exemplar.sha256, "size": {"width": 20, "height": 24}},
+        "curves": {
+            "distance": {
+                "title": "Distance",
+                "x_label": "iteration",
+                "y_label": "W1",
+                "x": [0, 1, 2],
+                "y": [1, None, None],
+            }
+        },
+        "measures": {"w1": 0.5, "none": None},
+    }
+    assert summary(result, None)["out"] is None
