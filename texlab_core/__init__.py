@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from texlab_core.images import as_exemplar
     from texlab_core.inputs import ArraysInput, Crop, DataInput, ImageInput
     from texlab_core.params import Knob, Params, describe
+    from texlab_core.record import read_recipe, save_result
     from texlab_core.registry import InputSpec, Method, find_method, register
     from texlab_core.run import AnalysisCache, Job, Streams
     from texlab_core.steps import Curve, Map, Output, Result, Step

@@ -6,13 +6,15 @@ import os
 import re
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from texlab_core.errors import InputError, ParamError
 from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+NumberT = TypeVar("NumberT", int, float)
 
 
 def parse_size(text: str, name: str = "size") -> tuple[int, int]:
@@ -46,17 +48,23 @@ def parse_settings(texts: Sequence[str]) -> dict[str, str]:
     return settings
 
 
-def output_file(text: str, suffixes: Sequence[str]) -> Path:
+def parse_number(name: str, text: str, kind: type[NumberT]) -> NumberT:
+    """Return the number that a text stands for; raises ``ParamError``. Whoever takes it checks its range."""
+    try:
+        return kind(text)
+    except ValueError:
+        raise ParamError(name, "a whole number" if kind is int else "a number", text) from None
+
+
+def output_file(text: str) -> Path:
     """Return the path of a file that can be written.
 
     Raises
     ------
     InputError
-        When its ending is none of ``suffixes``, it is a folder, or its folder is missing or cannot be written to.
+        When it is a folder, or its folder is missing or cannot be written to.
     """
     path = Path(text)
-    if path.suffix.lower() not in suffixes:
-        raise ParamError("out", f"a file name that ends in {_either(suffixes)}", text)
     if path.is_dir():
         raise InputError(f"{text} is a folder, and a file is wanted.")
     _check_writable(path.parent)
@@ -88,7 +96,3 @@ def _check_writable(folder: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be written to ({error.strerror}).") from error
-
-
-def _either(words: Sequence[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from texlab.commands._options import output_file, parse_size
 from texlab.commands.gui import require_qt
+from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     import argparse
@@ -27,7 +28,9 @@ def configure(parser: Parser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Draw and save the window."""
-    out = output_file(args.out, (".png",))
+    if not args.out.lower().endswith(".png"):
+        raise ParamError("out", "a file name that ends in .png", args.out)
+    out = output_file(args.out)
     height, width = parse_size(args.size)
     if args.gallery is not None:
         from texlab_core.gallery import find_entry

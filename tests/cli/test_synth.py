@@ -1,0 +1,265 @@
+"""``synth`` and ``redo``: what is saved, printed and refused; the same bits again."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.core.toy import NoiseParams, noise_method
+from texlab_core import registry, synthesize
+from texlab_core.image_files import read_image
+from texlab_core.image_writing import write_image
+from texlab_core.inputs import Crop
+from texlab_core.png_text import read_text
+from texlab_core.recipe_reading import KEY
+from texlab_core.record import read_recipe
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.cli.conftest import Texlab
+
+RAMP = np.linspace(0, 1, 20 * 30 * 3, dtype=np.float32).reshape(20, 30, 3)
+TOY = ("--method", "toy-noise")
+
+
+@pytest.fixture(autouse=True)
+def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Register a method with a known answer."""
+    registry.methods()
+    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method())
+    registry.methods.cache_clear()
+    yield
+    registry.methods.cache_clear()
+
+
+@pytest.fixture
+def ramp(texlab: Texlab) -> Path:
+    """An exemplar in the current folder."""
+    path = Path("ramp.png")
+    write_image(path, RAMP)
+    return path
+
+
+def test_the_file_is_what_the_python_api_makes(texlab: Texlab, ramp: Path) -> None:
+    shown = texlab(
+        *("synth", ramp, *TOY, "--out", "a.png", "--size", "24x10", "--seed", "7"),
+        *("--set", "rounds=2", "--set", "spread=0.5"),
+    )
+    assert (shown.code, shown.err) == (0, "")
+    assert re.fullmatch(r"a\.png: 24 x 10 by toy-noise, seed 7, in \d+\.\d\d s\.\n", shown.out)
+    expected = synthesize(str(ramp), "toy-noise", size=(10, 24), seed=7, rounds=2, spread=0.5)
+    np.testing.assert_array_equal(
+        read_image(Path("a.png"), "a.png").values, np.rint(expected.image * 255).astype(np.uint8)
+    )
+    recipe = read_recipe("a.png")
+    assert (recipe.method, recipe.size, recipe.seed) == ("toy-noise", (10, 24), 7)
+    assert recipe.params == NoiseParams(rounds=2, spread=0.5)
+
+
+def test_json_is_exactly_one_object(texlab: Texlab, ramp: Path) -> None:
+    shown = texlab("synth", ramp, *TOY, "--out", "a.png", "--json", "--crop", "16x8+3+4")
+    assert (shown.code, shown.err) == (0, "")
+    made = json.loads(shown.out)
+    assert made.pop("elapsed_s") > 0
+    exemplar = made.pop("exemplar")
+    assert (exemplar["name"], exemplar["size"]) == ("ramp.png", {"width": 16, "height": 8})
+    assert re.fullmatch("[0-9a-f]{64}", exemplar["sha256"])
+    assert made.pop("measures").keys() == {"mean"}
+    assert made.pop("curves")["distance"]["y"] == [0.5, 0.25]
+    assert made == {
+        "method": "toy-noise",
+        "parameters": NoiseParams().to_json(),
+        "size": {"width": 16, "height": 8},
+        "seed": 0,
+        "out": "a.png",
+    }
+
+
+def test_scale_and_crop_are_part_of_the_recipe(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", "a.png", "--scale", "0.5", "--crop", "8x5+2+1").code == 0
+    exemplar = read_recipe("a.png").inputs["exemplar"]
+    assert (exemplar.scale, exemplar.crop, exemplar.size) == (0.5, Crop(1, 2, 5, 8), (5, 8))
+
+
+@pytest.mark.parametrize(
+    ("name", "bits", "peak"), [("a.png", "16", 65535), ("a.tif", "float", None), ("a.jpg", "8", 255)]
+)
+def test_depths_and_formats(texlab: Texlab, ramp: Path, name: str, bits: str, peak: int | None) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", name, "--bits", bits).code == 0
+    assert read_image(Path(name), name).peak == peak
+
+
+def test_maps_and_curves_go_to_a_folder(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", "a.png", "--maps", "maps").code == 0
+    assert {"index.json", "distance.csv"} <= {path.name for path in Path("maps").iterdir()}
+
+
+def test_an_existing_file_is_replaced_whole(texlab: Texlab, ramp: Path) -> None:
+    Path("a.png").write_bytes(b"old")
+    assert texlab("synth", ramp, *TOY, "--out", "a.png").code == 0
+    assert read_recipe("a.png").method == "toy-noise"
+    assert sorted(path.name for path in Path().iterdir()) == ["a.png", "ramp.png"]
+
+
+def test_a_preset_is_the_base_of_settings(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("presets", "save", "mine", *TOY, "--set", "spread=0.75", "--set", "rounds=9").code == 0
+    shown = texlab("synth", ramp, *TOY, "--out", "a.png", "--preset", "mine", "--set", "rounds=1", "--json")
+    assert json.loads(shown.out)["parameters"] == NoiseParams(spread=0.75, rounds=1).to_json()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--method", "toy-nose"], "did you mean toy-noise"),
+        (["--set", "rounds=0"], "rounds: must be a whole number from 1 to 9, got 0"),
+        (["--set", "round=1"], "did you mean rounds"),
+        (["--set", "rounds"], "a name and a value"),
+        (["--size", "9"], "size: must be width and height"),
+        (["--size", "99999x99999"], "64 megapixels"),
+        (["--seed", "-1"], "seed: must be a whole number from 0"),
+        (["--seed", "x"], "seed: must be a whole number, got 'x'"),
+        (["--scale", "2"], "scale must be above 0 and at most 1"),
+        (["--scale", "half"], "scale: must be a number"),
+        (["--crop", "64x64+0+0"], "crop must lie inside"),
+        (["--crop", "9"], "crop: must be width"),
+        (["--out", "a.gif"], "a.gif: images are written as"),
+        (["--out", "no/a.png"], "The folder no does not exist"),
+        (["--out", "ramp.png"], "is the exemplar itself"),
+        (["--out", "a.png", "--bits", "float"], "float"),
+        (["--maps", "no/maps"], "The folder no does not exist"),
+        (["--maps", "ramp.png"], "is a file"),
+        (["--preset", "none such"], "none such"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, list) else "",
+)
+def test_mistakes_are_refused_before_the_work_starts(
+    texlab: Texlab, ramp: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], words: str
+) -> None:
+    monkeypatch.setattr("texlab_core.run.run", lambda *_: pytest.fail("The work started."))
+    before = ramp.read_bytes()
+    shown = texlab("synth", ramp, *TOY, "--out", "a.png", "--json", *arguments)
+    assert shown.code == 2
+    assert shown.out == ""
+    assert words in shown.err
+    assert shown.err.count("\n") == 1
+    assert ramp.read_bytes() == before
+    assert [path.name for path in Path().iterdir()] == ["ramp.png"]
+
+
+@pytest.mark.parametrize("image", ["missing.png", "gallery:nothing", ".", "text.png"])
+def test_an_image_that_cannot_be_read_is_said(texlab: Texlab, image: str) -> None:
+    Path("text.png").write_text("not an image")
+    shown = texlab("synth", image, *TOY, "--out", "a.png")
+    assert (shown.code, shown.out) == (2, "")
+    assert shown.err.startswith("texlab: ")
+    assert shown.err.count("\n") == 1
+
+
+def test_an_interrupted_run_leaves_no_file(texlab: Texlab, ramp: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("texlab_core.run.run", interrupted)
+    shown = texlab("synth", ramp, *TOY, "--out", "a.png")
+    assert (shown.code, shown.out, shown.err) == (130, "", "")
+    assert not Path("a.png").exists()
+
+
+def test_progress_is_shown_on_a_terminal_only(texlab: Texlab, ramp: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    shown = texlab("synth", ramp, *TOY, "--out", "a.png", "--json")
+    assert shown.code == 0
+    json.loads(shown.out)
+    assert "toy-noise" in shown.err
+
+
+@pytest.mark.parametrize(("name", "bits"), [("a.png", "8"), ("a.png", "16"), ("a.tif", "float"), ("a.tif", "8")])
+def test_redo_makes_the_same_bits_from_the_file_alone(texlab: Texlab, ramp: Path, name: str, bits: str) -> None:
+    options = ("--size", "24x10", "--seed", "7", "--set", "spread=0.5", "--crop", "16x8+3+4", "--bits", bits)
+    assert texlab("synth", ramp, *TOY, "--out", name, *options).code == 0
+    ramp.unlink()
+    again = f"again{Path(name).suffix}"
+    shown = texlab("redo", name, "--out", again)
+    assert (shown.code, shown.err) == (0, "")
+    assert shown.out.endswith(f"  The same bits as in {name}.\n")
+    one, other = (read_image(Path(each), each) for each in (name, again))
+    assert one.peak == other.peak
+    np.testing.assert_array_equal(one.values, other.values)
+    assert json.loads(texlab("redo", again, "--out", "third.png", "--json").out)["seed"] == 7
+
+
+def test_redo_can_replace_its_own_file(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", "a.png").code == 0
+    assert json.loads(texlab("redo", "a.png", "--out", "a.png", "--json").out)["same_bits"] is True
+
+
+def test_redo_of_a_jpeg_cannot_compare(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", "a.jpg").code == 0
+    made = json.loads(texlab("redo", "a.jpg", "--out", "b.png", "--json").out)
+    assert made["same_bits"] is None
+
+
+def test_redo_says_when_the_image_was_changed(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, *TOY, "--out", "a.png").code == 0
+    with open("a.png", "rb") as file:
+        recipe = read_text(file, KEY, 2**20)
+    assert recipe is not None
+    write_image("changed.png", RAMP, text={KEY: recipe})
+    shown = texlab("redo", "changed.png", "--out", "b.png", "--json")
+    assert json.loads(shown.out)["same_bits"] is False
+    assert shown.err == (
+        "texlab: The result is not bit for bit that of changed.png: the image was changed after it was saved.\n"
+    )
+    other = recipe.replace(f'"numpy":"{np.__version__}"', '"numpy":"1.0"')
+    write_image("older.png", RAMP, text={KEY: other})
+    said = texlab("redo", "older.png", "--out", "b.png").err
+    assert f"the versions differ (numpy 1.0 then, {np.__version__} here)" in said
+
+
+LARGE = np.random.Generator(np.random.PCG64(0)).random((900, 1000, 3), dtype=np.float32)
+
+
+def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab) -> None:
+    write_image("large.png", LARGE)
+    write_image("other.png", 1 - LARGE)
+    assert texlab("synth", "large.png", *TOY, "--out", "a.png", "--size", "9x9").code == 0
+    shown = texlab("redo", "a.png", "--out", "b.png")
+    assert (shown.code, shown.out) == (2, "")
+    assert "large.png" in shown.err
+    assert "--exemplar" in shown.err
+    assert shown.err.count("\n") == 1
+    assert not Path("b.png").exists()
+    wrong = texlab("redo", "a.png", "--exemplar", "other.png", "--out", "b.png")
+    assert wrong.code == 2
+    assert "other.png is not the image of the recipe" in wrong.err
+    right = texlab("redo", "a.png", "--exemplar", "large.png", "--out", "b.png", "--json")
+    assert json.loads(right.out)["same_bits"] is True
+
+
+def test_redo_refuses_files_without_a_recipe(texlab: Texlab, ramp: Path) -> None:
+    for name in ("ramp.png", "missing.png"):
+        shown = texlab("redo", name, "--out", "b.png")
+        assert (shown.code, shown.out) == (2, "")
+        assert shown.err.count("\n") == 1
+    assert texlab("redo", "ramp.png", "--out", "no/b.png").code == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(registry.methods()))
+def test_every_method_can_be_redone(texlab: Texlab, name: str) -> None:
+    options = ("--crop", "48x40+10+20", "--size", "32x24", "--seed", "5")
+    made = texlab("synth", "gallery:structured-pebbles", "--method", name, "--out", "a.png", *options)
+    assert (made.code, made.err) == (0, "")
+    assert json.loads(texlab("redo", "a.png", "--out", "b.png", "--json").out)["same_bits"] is True
+    one, other = (read_image(Path(each), each).values for each in ("a.png", "b.png"))
+    np.testing.assert_array_equal(one, other)
+    assert list(itertools.chain(Path().glob(".texlab*"), Path().glob("*.tmp"))) == []

@@ -1,0 +1,105 @@
+"""The public names, and synthesis in one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from itertools import count
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import texlab_core
+from tests.core.toy import NoiseParams, noise_method
+from texlab_core import registry
+from texlab_core.errors import Cancelled, ImageError, ParamError
+from texlab_core.inputs import DataInput
+from texlab_core.registry import EXEMPLAR, InputSpec
+from texlab_core.run import Job, run
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from texlab_core.steps import Step
+
+IMAGE = np.linspace(0, 1, 8 * 9, dtype=np.float32).reshape(8, 9)
+
+
+@pytest.fixture(autouse=True)
+def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    registry.methods()
+    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method())
+    code = InputSpec("code", "Some numbers.", kind="data", required=False)
+    monkeypatch.setitem(registry._METHODS, "toy-pair", noise_method(id="toy-pair", inputs=(EXEMPLAR, code)))
+    registry.methods.cache_clear()
+    yield
+    registry.methods.cache_clear()
+
+
+def test_one_line_equals_a_job() -> None:
+    result = texlab_core.synthesize(IMAGE, "toy-noise", size=(5, 6), seed=3, rounds=2)
+    job = Job(
+        method="toy-noise",
+        inputs={"exemplar": texlab_core.as_exemplar(IMAGE)},
+        params=NoiseParams(rounds=2),
+        size=(5, 6),
+        seed=3,
+    )
+    np.testing.assert_array_equal(result.image, run(job).image)
+    assert result.image.shape == (5, 6, 1)
+
+
+def test_an_exemplar_a_name_and_an_array_are_the_same_image() -> None:
+    exemplar = texlab_core.as_exemplar("gallery:structured-pebbles")
+    one = texlab_core.synthesize(exemplar, "toy-noise", size=(4, 4))
+    other = texlab_core.synthesize("gallery:structured-pebbles", "toy-noise", size=(4, 4))
+    np.testing.assert_array_equal(one.image, other.image)
+    assert texlab_core.synthesize(exemplar.pixels, "toy-noise").job.size == exemplar.size
+
+
+def test_steps_and_cancel() -> None:
+    steps: list[Step] = []
+    texlab_core.synthesize(IMAGE, "toy-noise", on_step=steps.append)
+    assert len(steps) == 5
+    asked = count()
+    with pytest.raises(Cancelled):
+        texlab_core.synthesize(IMAGE, "toy-noise", should_stop=lambda: next(asked) == 3)
+
+
+def test_further_inputs() -> None:
+    code = DataInput([1], "code")
+    assert texlab_core.synthesize(IMAGE, "toy-pair", inputs={"code": code}).job.inputs["code"] is code
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    with pytest.raises(ParamError, match="did you mean rounds"):
+        texlab_core.synthesize(IMAGE, "toy-noise", round=2)
+    with pytest.raises(ParamError, match="did you mean toy-noise"):
+        texlab_core.synthesize(IMAGE, "toy-nois")
+    with pytest.raises(ImageError):
+        texlab_core.synthesize(IMAGE[:0], "toy-noise")
+
+
+def test_every_public_name_is_there() -> None:
+    for name in texlab_core.__all__:
+        assert getattr(texlab_core, name).__name__ == name
+        assert getattr(texlab_core, name).__doc__
+    assert set(texlab_core.__all__) <= set(dir(texlab_core))
+    assert dict(texlab_core.available_methods()) == dict(registry.methods())
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = texlab_core.nothing
+
+
+def test_the_package_imports_nothing_until_a_name_is_used() -> None:
+    code = (
+        "import sys, texlab_core\n"
+        "assert 'numpy' not in sys.modules\n"
+        "from texlab_core import Knob\n"
+        "assert 'numpy' not in sys.modules\n"
+        "from texlab_core import synthesize, as_exemplar, save_result\n"
+        "heavy = [name for name in ('scipy', 'numba', 'cv2', 'PIL', 'PySide6', 'rich') if name in sys.modules]\n"
+        "assert heavy == [], heavy"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr == ""

@@ -1,0 +1,14 @@
+"""PyInstaller: methods are found by listing their package, resources by their package's name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PyInstaller.utils.hooks import collect_data_files, collect_submodules
+
+import texlab_core
+
+hiddenimports = collect_submodules("texlab_core")
+datas = collect_data_files("texlab_resources")
+if not datas:  # a checkout, where the package texlab_resources is the folder resources
+    datas = [(str(Path(texlab_core.__file__).resolve().parent.parent / "resources"), "texlab_resources")]
