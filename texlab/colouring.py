@@ -163,7 +163,7 @@ def source_colours(source: NDArray[np.int32], extent: tuple[int, int]) -> NDArra
     key = source_key(min(height, KEY_SIDE), min(width, KEY_SIDE))
     rows = np.clip(source[..., 0], 0, height - 1).astype(np.int64) * key.shape[0] // height
     columns = np.clip(source[..., 1], 0, width - 1).astype(np.int64) * key.shape[1] // width
-    colours = key[rows, columns]
+    colours: NDArray[np.uint8] = key[rows, columns]
     colours[(source < 0).any(axis=-1)] = NOTHING
     return colours
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,15 +39,14 @@ def open_source(source: str | bytes) -> Opened:
     InputError
         One sentence when it is neither.
     """
-    from texlab_core.record import has_recipe, read_recipe
-
+    from texlab_core.errors import NoRecipeError
     from texlab_core.images import as_exemplar
+    from texlab_core.recipe_reading import read_recipe
 
     path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
     if path is not None or isinstance(source, bytes):
-        where = source if isinstance(source, bytes) else Path(source)
-        if has_recipe(where):
-            job = read_recipe(where).job()
+        with contextlib.suppress(NoRecipeError):
+            job = read_recipe(source).job()
             image = job.inputs.get("exemplar")
             if isinstance(image, ImageInput):
                 return Opened(image, None, job)

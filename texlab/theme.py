@@ -180,6 +180,10 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
     application.setStyle("Fusion")
     application.setPalette(palette(theme))
+    # Fusion outlines check boxes with the darkened window colour, which a dark theme swallows.
+    boxes = palette(theme)
+    boxes.setColor(QPalette.ColorRole.Base, QColor(theme.border if theme.name == "dark" else theme.base))
+    application.setPalette(boxes, "QCheckBox")
     application.setStyleSheet(stylesheet(theme))
 
 

@@ -38,5 +38,9 @@ class RecipeError(InputError):
     """A recipe (in a saved result) that is missing, malformed or cannot be followed."""
 
 
+class NoRecipeError(RecipeError):
+    """A file without any recipe: an ordinary image, say."""
+
+
 class Cancelled(Exception):
     """The run was stopped because ``should_stop`` said so."""

@@ -50,7 +50,7 @@ class ParamValue(Protocol):
         ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Knob:
     """What a parameter is, for the form, the command line and the checks.
 

@@ -34,6 +34,9 @@ class Step:
         Makes a picture of the state, (H, W, C) float32 in [0, 1]; valid only until the computation goes on.
     frame
         Name of a stage worth keeping for the scrubber ("noise", "iteration 3", "level 2"); needs a ``preview``.
+    state
+        Makes a snapshot, named arrays of which an ``ArraysInput`` can be made, so that a job with this input goes on
+        from here; call it before the computation goes on, or after it was stopped at this step.
     phase
         Filled in by ``run``.
     """
@@ -44,6 +47,7 @@ class Step:
     metrics: Mapping[str, float] = field(default_factory=dict)
     preview: Callable[[], FloatImage] | None = None
     frame: str | None = None
+    state: Callable[[], Mapping[str, NDArray[Any]]] | None = None
     phase: Phase = "synthesis"
 
     @property

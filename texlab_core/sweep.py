@@ -54,7 +54,7 @@ class Vary:
         name, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not name or not values:
             raise ParamError("vary", _FORMS, text)
-        knob = _knob(name.replace("-", "_"), params)
+        knob = check_knob(name.replace("-", "_"), params)
         if values.startswith("["):
             given = strict_json.loads(values, what=f"the list of {knob.name}")
             return cls.of(knob.name, given, params)
@@ -65,13 +65,14 @@ class Vary:
     @classmethod
     def of(cls, name: str, values: Any, params: type[Params]) -> Vary:
         """Check values that come as data; raises ``ParamError`` like :meth:`parse`."""
-        knob = _knob(name, params)
+        knob = check_knob(name, params)
         if not isinstance(values, list | tuple) or not values:
             raise ParamError("vary", f"a list of values for {name}", values)
         return cls(name, _checked(knob, values, knob.check))
 
 
-def _knob(name: str, params: type[Params]) -> Field:
+def check_knob(name: str, params: type[Params], *, number: bool = False) -> Field:
+    """Return the knob that is to be varied (a ``number``); raises ``ParamError`` when there is no such knob."""
     if name == "seed":
         return Field("seed", "int", int, 0, Knob(help="Seed of the random numbers", low=0, high=MAX_SEED))
     fields = {each.name: each for each in describe(params)}
@@ -80,6 +81,8 @@ def _knob(name: str, params: type[Params]) -> Field:
         close = difflib.get_close_matches(name, known, n=1)
         hint = f" (did you mean {close[0]}?)" if close else ""
         raise ParamError("vary", f"one of {', '.join(known)}{hint}", name)
+    if number and fields[name].kind not in ("int", "float"):
+        raise ParamError("vary", f"a list of values for {name}", "a range")
     return fields[name]
 
 
@@ -88,19 +91,20 @@ def _range(knob: Field, text: str) -> tuple[Any, ...]:
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
         raise ParamError("vary", _FORMS, f"{knob.name}={text}")
     first, last = knob.parse(parts[0]), knob.parse(parts[1])
-    if not (parts[2].isascii() and parts[2].isdigit() and 1 <= int(parts[2][:9]) <= MAX_CELLS):
-        raise ParamError("vary", f"a count from 1 to {MAX_CELLS} for {knob.name}", parts[2])
-    return spread(knob, first, last, int(parts[2]), log=len(parts) == 4)
+    count = int(parts[2]) if parts[2].isascii() and parts[2].isdigit() and len(parts[2]) < 9 else parts[2]
+    return spread(knob, first, last, count, log=len(parts) == 4)
 
 
-def spread(knob: Field, first: float, last: float, count: int, *, log: bool = False) -> tuple[Any, ...]:
+def spread(knob: Field, first: float, last: float, count: object, *, log: bool = False) -> tuple[Any, ...]:
     """Return ``count`` values of a knob from ``first`` to ``last``, evenly or in even ratios.
 
     Raises
     ------
     ParamError
-        When ``log`` is asked for and one end is not positive.
+        When ``count`` is no whole number from 1 to 400, or ``log`` is asked for and one end is not positive.
     """
+    if type(count) is not int or not 1 <= count <= MAX_CELLS:
+        raise ParamError("vary", f"a count from 1 to {MAX_CELLS} for {knob.name}", count)
     if log and (first <= 0 or last <= 0):
         raise ParamError("vary", f"a range above 0 for {knob.name} in even ratios", f"{first:g}:{last:g}")
     places = np.geomspace(first, last, count) if log else np.linspace(first, last, count)

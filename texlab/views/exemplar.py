@@ -13,6 +13,7 @@ from texlab.views.image_pane import ImagePane, ViewLink
 from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:
+    from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.scene import Picture
@@ -68,6 +69,7 @@ class ExemplarView(QFrame):
         self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
         self._box: Any = None
+        self._name = ""
         self._crop: Crop | None = None
         head = QHBoxLayout()
         head.setSpacing(2)
@@ -93,8 +95,9 @@ class ExemplarView(QFrame):
 
     def show_choice(self, name: str, line: str, scale: float, crop: Crop | None) -> None:
         """Show name, size and notes, scale and crop without emitting anything."""
-        self.title.setText(name)
+        self._name = name
         self.title.setToolTip(name)
+        self._elide()
         self.line.setText(line)
         self.line.setToolTip(line)
         with QSignalBlocker(self.scale_box):
@@ -102,6 +105,15 @@ class ExemplarView(QFrame):
         with QSignalBlocker(self.crop_button):
             self.crop_button.setChecked(crop is not None)
         self._show_crop(crop)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Shorten the name to the room there is."""
+        super().resizeEvent(event)
+        self._elide()
+
+    def _elide(self) -> None:
+        room = self.title.width()
+        self.title.setText(self.title.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
 
     def _show_crop(self, crop: Crop | None) -> None:
         if crop == self._crop and (crop is None) == (self._box is None):

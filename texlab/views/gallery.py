@@ -78,7 +78,11 @@ class GalleryView(QWidget):
         if item is not None:
             height, width = picture.shape[:2]
             image = QImage(picture.tobytes(), width, height, 3 * width, QImage.Format.Format_RGB888)
-            item.setIcon(0, QIcon(QPixmap.fromImage(image)))
+            pixmap = QPixmap.fromImage(image)
+            icon = QIcon(pixmap)
+            # The chosen texture keeps its colours.
+            icon.addPixmap(pixmap, QIcon.Mode.Selected)
+            item.setIcon(0, icon)
 
     def mark(self, name: str) -> None:
         """Mark the texture that is the exemplar (none when it is no texture of the gallery)."""

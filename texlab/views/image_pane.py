@@ -91,12 +91,14 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     hovered = Signal(int, int)
     clicked = Signal(int, int)
     painted = Signal()
+    # The base class resizes itself while it is made.
+    _link: ViewLink | None = None
+    _picture: Picture | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(parent, background=None)
         self._link = link
         self._tiled = False
-        self._picture: Picture | None = None
         self._press: QPoint | None = None
         self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
         self.view.setMouseMode(pg.ViewBox.PanMode)
@@ -108,7 +110,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.setMouseTracking(True)
         self.setMinimumSize(60, 60)
         self.view.sigRangeChangedManually.connect(self._moved)
-        self.view.sigResized.connect(lambda _: self._link.extent_changed())
+        self.view.sigResized.connect(lambda _: link.extent_changed())
         self.scene().sigMouseMoved.connect(self._pointer_moved)
         link.join(self)
 
@@ -157,7 +159,9 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         for copy in self._copies:
             self.view.addItem(copy)
         self.set_picture(self._picture)
-        self._link.extent_changed()
+        link = self._link
+        if link is not None:
+            link.extent_changed()
 
     def set_overlay(self, picture: Picture | None, opacity: float = 0.6) -> None:
         """Lay a coloured map of the same size over the picture, or take it away."""
@@ -199,12 +203,14 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 
     def detach(self) -> None:
         """Leave the link before the pane is deleted."""
-        self._link.leave(self)
+        if self._link is not None:
+            self._link.leave(self)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit again when the user has not zoomed."""
         super().resizeEvent(event)
-        self._link.extent_changed()
+        if self._link is not None:
+            self._link.extent_changed()
 
     def leaveEvent(self, event: QEvent) -> None:
         """Tell that the cursor has left."""
@@ -228,7 +234,8 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def mouseDoubleClickEvent(self, event: Any) -> None:
         """Fit all panes."""
         super().mouseDoubleClickEvent(event)
-        self._link.fit()
+        if self._link is not None:
+            self._link.fit()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         """Leave context menus to the column."""
@@ -243,7 +250,8 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 
     def _moved(self, *_: object) -> None:
         self._choose_filter()
-        self._link.moved(self)
+        if self._link is not None:
+            self._link.moved(self)
 
     def _choose_filter(self) -> None:
         # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.

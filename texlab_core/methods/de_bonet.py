@@ -304,7 +304,7 @@ register(
     Method(
         id="de-bonet",
         title="De Bonet",
-        summary="Samples every frequency band from the exemplar, conditioned on edges and lines of the coarser ones.",
+        summary="Samples every frequency band from the exemplar, conditioned on the features of all coarser ones.",
         reference="J. S. De Bonet, Multiresolution sampling procedure for analysis and synthesis of texture "
         "images, SIGGRAPH 1997",
         params=DeBonetParams,

@@ -231,7 +231,7 @@ def _lay_out(exemplar: Grid, output: Grid, coarsest: Coarsest, key: int) -> NDAr
         tile_row, tile_column = row // exemplar.rows, column // exemplar.columns
         shift = _hashed(key, tile_row, tile_column, exemplar.rows * exemplar.columns)
         row, column = row + shift // exemplar.columns, column + shift % exemplar.columns
-    source = row % exemplar.rows * exemplar.columns + column % exemplar.columns
+    source: NDArray[np.int64] = row % exemplar.rows * exemplar.columns + column % exemplar.columns
     return source.astype(np.int32)
 
 

@@ -42,7 +42,8 @@ def resample(target: Sample, count: int) -> Sample:
     if count == target.size:
         return target
     places = (np.arange(count) + 0.5) * (target.size / count) - 0.5
-    return np.interp(places, np.arange(target.size), target).astype(np.float32)
+    resampled: Sample = np.interp(places, np.arange(target.size), target).astype(np.float32)
+    return resampled
 
 
 def match_ranks(values: NDArray[Any], target: Sample, key: int = 0) -> Sample:

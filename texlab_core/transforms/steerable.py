@@ -13,7 +13,7 @@ Reference: Heeger and Bergen 1995, section 2.1; Simoncelli and Freeman 1995; For
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,19 +72,21 @@ class SteerablePyramid:
 class BandKey:
     """Place of a subband in the pyramid."""
 
-    kind: str
+    kind: Literal["highpass", "oriented", "laplacian", "lowpass"]
     level: int = 0
     orientation: int = 0
 
     @property
     def label(self) -> str:
-        """Short name: ``high``, ``l0-o1`` or ``low``."""
-        return f"l{self.level}-o{self.orientation}" if self.kind == "oriented" else self.kind.removesuffix("pass")
+        """Short name: ``high``, ``l0-o1``, ``l0`` (of a Laplacian pyramid) or ``low``."""
+        if self.kind == "oriented":
+            return f"l{self.level}-o{self.orientation}"
+        return f"l{self.level}" if self.kind == "laplacian" else self.kind.removesuffix("pass")
 
 
 def band_keys(levels: int, orientations: int) -> tuple[BandKey, ...]:
     """Return the places of all subbands, from fine to coarse."""
-    oriented = [BandKey("oriented", level, index) for level in range(levels) for index in range(orientations)]
+    oriented = (BandKey("oriented", level, index) for level in range(levels) for index in range(orientations))
     return (BandKey("highpass"), *oriented, BandKey("lowpass", levels))
 
 
@@ -188,11 +190,14 @@ class Transform:
         return band_keys(self.levels, self.orientations)
 
     def response(self, key: BandKey) -> Plane:
-        """Return the real response of a band on its cropped half spectrum."""
+        """Return the real response of a band on its cropped half spectrum.
+
+        The residual below another number of levels may be asked for as well.
+        """
         if key.kind == "highpass":
             return filters.highpass(self.size, self.dtype)
         if key.kind == "lowpass":
-            return filters.lowpass(self.size, self.levels, self.dtype)
+            return filters.lowpass(self.size, key.level, self.dtype)
         return filters.oriented(self.size, key.level, self.orientations, key.orientation, self.dtype)
 
     def forward(self, image: Plane) -> Spectrum:

@@ -1,0 +1,311 @@
+"""Themed plots and colour bars for docks: pyqtgraph ignores the palette, so every item takes its colours here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QImage, QPainter
+from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
+
+from texlab.theme import configure_pyqtgraph
+from texlab.views.image_pane import ImagePane, ViewLink
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+    from PySide6.QtCore import QPointF
+    from PySide6.QtGui import QPaintEvent
+
+    from texlab.scene import Picture
+    from texlab.theme import Theme
+
+pg = configure_pyqtgraph()
+
+Role = Literal["exemplar", "result", "third", "good", "warning", "error", "muted", "text", "accent"]
+Line = Literal["solid", "dash", "dot"]
+LINES = {"solid": Qt.PenStyle.SolidLine, "dash": Qt.PenStyle.DashLine, "dot": Qt.PenStyle.DotLine}
+# Colours and line styles for any number of series: no two of the first nine look alike without colour either.
+SERIES: tuple[tuple[Role, Line], ...] = (
+    ("exemplar", "solid"),
+    ("result", "dash"),
+    ("third", "dot"),
+    ("warning", "solid"),
+    ("muted", "dash"),
+    ("error", "dot"),
+    ("good", "dash"),
+    ("accent", "dot"),
+    ("text", "solid"),
+)
+
+
+@dataclass
+class _Series:
+    item: Any
+    role: Role
+    line: Line
+    width: float
+    filled: bool
+
+
+class Plot(QWidget):
+    """One pair of axes with curves that follow the theme.
+
+    ``hovered(x, y)`` is in the coordinates of the axes.
+    """
+
+    hovered = Signal(float, float)
+    left = Signal()
+    clicked = Signal()
+
+    def __init__(self, name: str, label: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setAccessibleName(label)
+        self._theme: Theme | None = None
+        self._series: list[_Series] = []
+        self._texts: list[tuple[Any, Role]] = []
+        self._labels = ("", "")
+        self.graph: Any = pg.PlotWidget(self, background=None, enableMenu=False)
+        self.graph.setObjectName(f"{name}-graph")
+        self.graph.setAccessibleName(label)
+        self.graph.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.graph.setMinimumSize(60, 50)
+        self.plot: Any = self.graph.getPlotItem()
+        self.plot.hideButtons()
+        self.view: Any = self.plot.getViewBox()
+        # The scene drops moves that follow each other quickly, the last one too; the view does not.
+        self.graph.sigSceneMouseMoved.connect(self._moved)
+        self.graph.scene().sigMouseClicked.connect(self._clicked)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.graph)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+
+    def sizeHint(self) -> QSize:
+        """Ask for little: docks are low."""
+        return QSize(200, 120)
+
+    def clear(self) -> None:
+        """Take all curves and texts away."""
+        for series in self._series:
+            self.plot.removeItem(series.item)
+        for item, _ in self._texts:
+            self.plot.removeItem(item)
+        self._series.clear()
+        self._texts.clear()
+
+    def curve(
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        role: Role,
+        *,
+        line: Line = "solid",
+        width: float = 2,
+        steps: bool = False,
+        filled: bool = False,
+        floor: float = 0.0,
+    ) -> Any:
+        """Add a curve.
+
+        Parameters
+        ----------
+        x
+            Places; with ``steps`` the edges, one more than ``y``.
+        y
+            Values.
+        role, line, width
+            Colour by role, style and width in pixels.
+        steps
+            Draw a histogram's steps.
+        filled
+            Fill the area down to ``floor``.
+        """
+        item = pg.PlotCurveItem(
+            x=np.asarray(x, np.float64),
+            y=np.asarray(y, np.float64),
+            stepMode="center" if steps else None,
+            fillLevel=floor if filled else None,
+        )
+        self._series.append(_Series(item, role, line, width, filled))
+        self.plot.addItem(item)
+        if self._theme is not None:
+            self._paint(self._series[-1], self._theme)
+        return item
+
+    def text(self, x: float, y: float, words: str, role: Role, anchor: tuple[float, float] = (0, 1)) -> Any:
+        """Write words at a place of the axes; they do not change the range."""
+        item = pg.TextItem(words, anchor=anchor)
+        item.setPos(x, y)
+        self._texts.append((item, role))
+        self.plot.addItem(item, ignoreBounds=True)
+        if self._theme is not None:
+            item.setColor(QColor(getattr(self._theme, role)))
+        return item
+
+    def set_labels(self, x: str, y: str) -> None:
+        """Name the axes."""
+        self._labels = (x, y)
+        if self._theme is not None:
+            self._paint_axes(self._theme)
+
+    def set_log(self, *, x: bool = False, y: bool = False) -> None:
+        """Write the ticks of an axis as powers of ten; the curves are given as log10 already."""
+        self.plot.getAxis("bottom").setLogMode(x)
+        self.plot.getAxis("left").setLogMode(y)
+
+    def fit(self, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
+        """Show a range, or everything where it is left out."""
+        self.view.disableAutoRange()
+        bounds = self.view.childrenBounds(items=[series.item for series in self._series])
+        if x is not None or bounds[0] is not None:
+            self.view.setXRange(*(x or bounds[0]), padding=0 if x else 0.02)
+        if y is not None or bounds[1] is not None:
+            self.view.setYRange(*(y or bounds[1]), padding=0 if y else 0.06)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        self.graph.setBackground(QColor(theme.base))
+        self._paint_axes(theme)
+        for series in self._series:
+            self._paint(series, theme)
+        for item, role in self._texts:
+            item.setColor(QColor(getattr(theme, role)))
+
+    def _paint_axes(self, theme: Theme) -> None:
+        for side, words in zip(("bottom", "left"), self._labels, strict=True):
+            axis = self.plot.getAxis(side)
+            axis.setPen(pg.mkPen(theme.border))
+            axis.setTextPen(pg.mkPen(theme.muted))
+            axis.setStyle(tickLength=-4, maxTickLevel=1)
+            axis.setLabel(words or None, color=theme.muted)
+            axis.showLabel(bool(words))
+
+    def _paint(self, series: _Series, theme: Theme) -> None:
+        colour = QColor(getattr(theme, series.role))
+        series.item.setPen(pg.mkPen(colour, width=series.width, style=LINES[series.line]))
+        if series.filled:
+            wash = QColor(colour)
+            wash.setAlpha(60)
+            series.item.setBrush(pg.mkBrush(wash))
+
+    def _moved(self, where: QPointF) -> None:
+        if self.view.sceneBoundingRect().contains(where):
+            point = self.view.mapSceneToView(where)
+            self.hovered.emit(float(point.x()), float(point.y()))
+        else:
+            self.left.emit()
+
+    def _clicked(self, event: Any) -> None:
+        if event.double():
+            self.fit()
+        else:
+            self.clicked.emit()
+
+
+class ColourBar(QWidget):
+    """A vertical bar of colours with numbers beside it and a mark at the value under the cursor."""
+
+    def __init__(self, name: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setAccessibleName("Colour scale")
+        self.setToolTip("Which colour stands for which value")
+        self._theme: Theme | None = None
+        self._table: NDArray[np.uint8] = np.zeros((2, 3), np.uint8)
+        self._ticks: list[tuple[float, str]] = []
+        self._mark: float | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
+
+    @property
+    def ticks(self) -> list[tuple[float, str]]:
+        """Places (0 at the bottom, 1 at the top) and words of the numbers."""
+        return self._ticks
+
+    @property
+    def mark(self) -> float | None:
+        """Place of the mark."""
+        return self._mark
+
+    def show_scale(self, table: NDArray[np.uint8], ticks: Sequence[tuple[float, str]]) -> None:
+        """Show colours, (size, 3) uint8 from bottom to top, and numbers at places 0 .. 1."""
+        self._table = np.ascontiguousarray(table[::-1])
+        self._ticks = list(ticks)
+        self._mark = None
+        self.updateGeometry()
+        self.update()
+
+    def set_mark(self, place: float | None) -> None:
+        """Mark a place of the bar."""
+        self._mark = None if place is None or not np.isfinite(place) else float(np.clip(place, 0, 1))
+        self.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        """Return room for the bar and its widest number."""
+        metrics = self.fontMetrics()
+        widest = max((metrics.horizontalAdvance(words) for _, words in self._ticks), default=0)
+        return QSize(34 + widest, 80)
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the width of the hint."""
+        return QSize(self.sizeHint().width(), 40)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the bar."""
+        if self._theme is None:
+            return
+        painter = QPainter(self)
+        metrics = self.fontMetrics()
+        half = metrics.height() / 2
+        bar = QRectF(6, half + 2, 14, max(self.height() - 2 * half - 4, 1))
+        size = len(self._table)
+        painter.drawImage(bar, QImage(self._table.data, 1, size, 3, QImage.Format.Format_RGB888))
+        painter.setPen(QColor(self._theme.border))
+        painter.drawRect(bar)
+        painter.setPen(QColor(self._theme.text))
+        lowest = self.height() + half
+        for place, words in sorted(self._ticks):
+            y = bar.bottom() - place * bar.height()
+            if y + half <= lowest:
+                painter.drawText(round(bar.right()) + 6, round(y + half - metrics.descent()), words)
+                lowest = y - half
+        if self._mark is not None:
+            y = bar.bottom() - self._mark * bar.height()
+            painter.fillRect(QRectF(bar.left() - 5, y - 1.5, bar.width() + 10, 3), QColor(self._theme.text))
+        painter.end()
+
+
+class PicturePane(ImagePane):
+    """An image pane that fits whatever picture it is given; panes of one ``link`` pan and zoom together."""
+
+    def __init__(self, name: str, label: str, link: ViewLink | None = None) -> None:
+        self._own_link = link or ViewLink()
+        super().__init__(self._own_link)
+        self.setObjectName(name)
+        self.setAccessibleName(label)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+
+    def set_picture(self, picture: Picture | None) -> None:
+        """Show a picture, or nothing."""
+        if picture is not None:
+            self._own_link.set_extent(*picture.shape[:2])
+        super().set_picture(picture)
+
+
+def number(value: float) -> str:
+    """Return a number with four digits that matter, for tables and read-outs."""
+    if not np.isfinite(value):
+        return "none"
+    if value != 0 and (abs(value) >= 1e5 or abs(value) < 1e-4):
+        return f"{value:.2e}"
+    return f"{value:.4g}"
