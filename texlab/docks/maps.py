@@ -1,0 +1,217 @@
+"""Maps: where every pixel came from, how many candidates it had, which regions were copied."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QIcon, QPixmap
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QSlider,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from texlab import colouring
+from texlab.dock_frame import FramedDock, Same, replace_items
+from texlab.plots import ColourBar, PicturePane, number
+from texlab.scene import Question
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.scene import Picture, Scene
+    from texlab.theme import Theme
+    from texlab_core.steps import Map
+
+REGIONS_LISTED = 12
+
+
+@dataclass(frozen=True, eq=False)
+class MapsAnswer:
+    """A coloured map with what its legend needs."""
+
+    shown: Map
+    picture: Picture
+    below: Picture | None
+    extent: tuple[int, int] | None
+    key: Picture | None = None
+    scale: colouring.Scale | None = None
+    regions: tuple[tuple[int, int], ...] = ()
+    region: int = 0
+
+
+def colour(shown: Map, below: Picture | None, extent: tuple[int, int] | None, region: int = 0) -> MapsAnswer:
+    """Colour a map; ``region`` > 0 leaves only that label in colour."""
+    picture = colouring.colour_map(shown, extent)
+    if shown.kind == "source":
+        height, width = extent or colouring.source_extent(shown.data)
+        key = colouring.source_key(min(height, colouring.KEY_SIDE), min(width, colouring.KEY_SIDE))
+        return MapsAnswer(shown, picture, below, (height, width), key=key)
+    if shown.kind == "label":
+        regions = tuple(colouring.label_sizes(shown.data, REGIONS_LISTED))
+        picture = colouring.mark_edges(picture, shown.data)
+        if region and any(label == region for label, _ in regions):
+            picture[shown.data != region] //= 5
+        return MapsAnswer(shown, picture, below, extent, regions=regions, region=region)
+    return MapsAnswer(shown, picture, below, extent, scale=colouring.map_scale(shown))
+
+
+class MapsDock(FramedDock):
+    """Shows one map of the chosen column's result, over the result."""
+
+    name = "maps"
+    title = "Maps"
+    help = "Where every pixel came from, how many candidates it had, what was copied."
+    order = 40
+    empty = "Maps appear when a method that records them has finished."
+
+    def build(self) -> None:
+        """Make the chooser, the picture and the legends."""
+        self.chooser = self.add_choice("map", "Map", "Which map of the result to show", [], self.ask)
+        self.opacity = QSlider(Qt.Orientation.Horizontal)
+        self.opacity.setRange(0, 100)
+        self.opacity.setValue(100)
+        self.opacity.setFixedWidth(110)
+        self.opacity.valueChanged.connect(self._show_overlay)
+        tip = "How strongly the map covers the result: all the way left shows the result alone"
+        self.add_control(self.opacity, "opacity", "Opacity of the map", tip)
+        self.readout = self.add_readout()
+
+        self.pane = PicturePane("maps-pane", "Map over the result")
+        self.pane.hovered.connect(self._hover)
+        self.bar = ColourBar("maps-bar")
+        self.key = PicturePane("maps-key", "Colour of every place of the exemplar")
+        self.key.hovered.connect(self._hover_key)
+        self.regions = QListWidget()
+        self.regions.setObjectName("maps-regions")
+        self.regions.setAccessibleName("Largest regions")
+        self.regions.setToolTip("The largest regions; choose one to see it alone, choose it again to see all")
+        self.regions.itemActivated.connect(self._choose_region)
+        self.regions.itemClicked.connect(self._choose_region)
+        self._region = 0
+
+        self.legend = QStackedWidget()
+        key_page = QWidget()
+        key_layout = QVBoxLayout(key_page)
+        key_layout.setContentsMargins(0, 0, 0, 0)
+        key_layout.addWidget(self.key, 1)
+        key_label = QLabel("Place in the exemplar")
+        key_label.setProperty("role", "muted")
+        key_layout.addWidget(key_label)
+        for page in (key_page, self.bar, self.regions):
+            self.legend.addWidget(page)
+        self._key_page = key_page
+        layout = QHBoxLayout(self.body)
+        layout.setContentsMargins(6, 0, 6, 6)
+        layout.addWidget(self.pane, 3)
+        layout.addWidget(self.legend, 1)
+        self.legend.setMaximumWidth(280)
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give panes and bar their colours."""
+        for each in (self.pane, self.key, self.bar):
+            each.set_theme(theme)
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the chosen map of the chosen column."""
+        column = scene.selected
+        result = column.result if column is not None else None
+        if column is None or result is None or not result.maps:
+            finished = column is not None and result is not None
+            self.why = f"{column.title} records no maps." if column is not None and finished else ""
+            replace_items(self.chooser, [])
+            return None
+        replace_items(self.chooser, [(each.title, name) for name, each in result.maps.items()])
+        name = self.chooser.currentData()
+        shown = result.maps[name]
+        below = column.picture
+        extent = scene.exemplar.size if scene.exemplar is not None else None
+        region = self._region
+
+        def compute(should_stop: Callable[[], bool]) -> MapsAnswer:
+            return colour(shown, below, extent, region)
+
+        return Question((self.name, Same(result), name, region), compute)
+
+    def show_answer(self, answer: MapsAnswer) -> None:
+        """Show the map with its legend."""
+        self.readout.setText("")
+        same_size = answer.below is not None and answer.below.shape == answer.picture.shape
+        self.pane.set_picture(answer.below if same_size else np.zeros_like(answer.picture))
+        self._show_overlay()
+        if answer.key is not None:
+            self.key.set_picture(answer.key)
+            self.legend.setCurrentWidget(self._key_page)
+        elif answer.scale is not None:
+            ticks = [(place, number(answer.scale.value(place))) for place in (0.0, 0.25, 0.5, 0.75, 1.0)]
+            self.bar.show_scale(colouring.map_table(answer.shown), ticks)
+            self.legend.setCurrentWidget(self.bar)
+        else:
+            self._list_regions(answer)
+            self.legend.setCurrentWidget(self.regions)
+
+    def _list_regions(self, answer: MapsAnswer) -> None:
+        self.regions.clear()
+        total = answer.shown.data.size
+        highest = max((label for label, _ in answer.regions), default=0)
+        table = colouring.label_table(highest + 1)
+        for label, pixels in answer.regions:
+            swatch = QPixmap(12, 12)
+            swatch.fill(QColor(*(int(part) for part in table[label])))
+            item = QListWidgetItem(QIcon(swatch), f"{pixels} pixels, {pixels / total:.1%}")
+            item.setData(Qt.ItemDataRole.UserRole, label)
+            self.regions.addItem(item)
+            if label == answer.region:
+                self.regions.setCurrentItem(item)
+        if not answer.regions:
+            self.regions.addItem("No regions")
+
+    def _choose_region(self, item: QListWidgetItem) -> None:
+        label = item.data(Qt.ItemDataRole.UserRole) or 0
+        self._region = 0 if label == self._region else label
+        self.ask()
+
+    def _show_overlay(self, *_: object) -> None:
+        if self.answer is not None:
+            self.pane.set_overlay(self.answer.picture, self.opacity.value() / 100)
+
+    def _hover(self, row: int, column: int) -> None:
+        answer: MapsAnswer | None = self.answer
+        if answer is None or row < 0:
+            self.readout.setText("")
+            self.bar.set_mark(None)
+            return
+        value = answer.shown.data[row, column]
+        self.readout.setText(f"{column}, {row}: {describe(answer, value)}")
+        if answer.scale is not None:
+            self.bar.set_mark(float(answer.scale.place(value)))
+
+    def _hover_key(self, row: int, column: int) -> None:
+        answer: MapsAnswer | None = self.answer
+        if answer is None or answer.key is None or answer.extent is None or row < 0:
+            self.readout.setText("")
+            return
+        height, width = answer.extent
+        place = (column * width // answer.key.shape[1], row * height // answer.key.shape[0])
+        self.readout.setText(f"exemplar {place[0]}, {place[1]}")
+
+
+def describe(answer: MapsAnswer, value: Any) -> str:
+    """Return the value of a pixel in words."""
+    shown = answer.shown
+    if shown.kind == "source":
+        row, column = (int(part) for part in value)
+        return "no source" if min(row, column) < 0 else f"from exemplar {column}, {row}"
+    if shown.kind == "label":
+        pixels = int(np.count_nonzero(shown.data == value)) if value > 0 else 0
+        return f"region {int(value)}, {pixels} pixels" if value > 0 else "no region"
+    unit = f" {shown.unit}" if shown.unit else ""
+    return f"{number(float(value))}{unit}"

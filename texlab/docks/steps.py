@@ -1,0 +1,146 @@
+"""Steps: a scrubber over the stages of a run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
+
+from texlab.dock_frame import FramedDock, Same
+from texlab.plots import PicturePane
+from texlab.scene import Question
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from PySide6.QtGui import QHideEvent, QKeyEvent
+
+    from texlab.scene import Frame, Scene
+    from texlab.theme import Theme
+
+SPEEDS = ((1, "1 per second"), (2, "2 per second"), (4, "4 per second"), (10, "10 per second"))
+
+
+class StepsDock(FramedDock):
+    """Plays the stages that the chosen column kept: noise, iterations, levels."""
+
+    name = "steps"
+    title = "Steps"
+    help = "The stages of the run, one by one: noise, iterations, levels."
+    order = 30
+    empty = "The stages of a run appear here."
+
+    def build(self) -> None:
+        """Make the scrubber and the picture."""
+        self._frames: tuple[Frame, ...] = ()
+        self._column = 0
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._advance)
+        self.play = self.add_button("play", "Play", "Play the stages in a loop (Space)", self.toggle)
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setMinimumWidth(180)
+        self.slider.setPageStep(1)
+        self.slider.setTickPosition(QSlider.TickPosition.TicksBelow)
+        self.slider.valueChanged.connect(self._show)
+        self.slider.sliderPressed.connect(self.pause)
+        self.add_control(self.slider, "slider", "Stage", "Which stage to show (Left, Right, Home, End)")
+        self.speed = self.add_choice(
+            "speed", "Speed", "How fast to play", [(text, rate) for rate, text in SPEEDS], self._take_speed
+        )
+        self.speed.setCurrentIndex(1)
+        self.label = QLabel("")
+        self.label.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
+        self.label.setMinimumWidth(150)
+        self.add_control(
+            self.label, "label", "Name of the stage", "The stage that is shown and how many there are"
+        )
+        self.pane = PicturePane("steps-pane", "Picture of the stage")
+        layout = QVBoxLayout(self.body)
+        layout.setContentsMargins(6, 0, 6, 6)
+        layout.addWidget(self.pane)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give the pane its colours."""
+        self.pane.set_theme(theme)
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the chosen column's stages; there is nothing to compute."""
+        column = scene.selected
+        if column is None or not column.frames:
+            self.why = "" if column is None or column.result is None else f"{column.title} keeps no stages."
+            return None
+        answer = (column.id, column.frames)
+
+        def compute(should_stop: Callable[[], bool]) -> tuple[int, tuple[Frame, ...]]:
+            return answer
+
+        return Question((self.name, column.id, tuple(Same(frame) for frame in column.frames)), compute)
+
+    def show_answer(self, answer: tuple[int, tuple[Frame, ...]]) -> None:
+        """Take the stages; a scrubber at the end stays at the end, so that a run can be watched."""
+        column, frames = answer
+        at_end = column != self._column or self.slider.value() == self.slider.maximum()
+        self._column, self._frames = column, frames
+        place = len(frames) - 1 if at_end and not self.playing else min(self.slider.value(), len(frames) - 1)
+        blocked = self.slider.blockSignals(True)
+        self.slider.setRange(0, len(frames) - 1)
+        self.slider.setValue(place)
+        self.slider.blockSignals(blocked)
+        self._show(place)
+
+    def present_nothing(self, reason: str) -> None:
+        """Stop playing and say why there is nothing."""
+        self.pause()
+        self._frames = ()
+        self.label.setText("")
+        super().present_nothing(reason)
+
+    @property
+    def playing(self) -> bool:
+        """Whether the stages are being played."""
+        return self._timer.isActive()
+
+    def toggle(self) -> None:
+        """Play, or pause."""
+        if self.playing:
+            self.pause()
+        elif len(self._frames) > 1:
+            self._timer.start(1000 // int(self.speed.currentData()))
+            self.play.setText("Pause")
+
+    def pause(self) -> None:
+        """Stop playing."""
+        self._timer.stop()
+        self.play.setText("Play")
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        """Stop playing: nobody looks."""
+        self.pause()
+        super().hideEvent(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Scrub with the arrow keys, Home and End; play and pause with Space."""
+        steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Home: -(10**6), Qt.Key.Key_End: 10**6}
+        key = Qt.Key(event.key())
+        if key == Qt.Key.Key_Space:
+            self.toggle()
+        elif key in steps:
+            self.pause()
+            self.slider.setValue(self.slider.value() + steps[key])
+        else:
+            super().keyPressEvent(event)
+
+    def _take_speed(self) -> None:
+        if self.playing:
+            self._timer.setInterval(1000 // int(self.speed.currentData()))
+
+    def _advance(self) -> None:
+        self.slider.setValue((self.slider.value() + 1) % len(self._frames))
+
+    def _show(self, place: int) -> None:
+        if 0 <= place < len(self._frames):
+            frame = self._frames[place]
+            self.pane.set_picture(frame.picture)
+            self.label.setText(f"{frame.name}   {place + 1} of {len(self._frames)}")
