@@ -135,6 +135,9 @@ def _unit_range(decoded: Decoded, background: np.float32, name: str, notes: list
     if pixels.shape[2] == 3 and _is_gray(pixels):
         notes.append("The three channels are equal, so the image is used as gray.")
         pixels = pixels[..., :1]
+    if pixels.base is None and pixels.flags.c_contiguous:
+        # Made here, and nobody else has it: no need for a copy.
+        pixels.flags.writeable = False
     return pixels
 
 
@@ -152,7 +155,8 @@ def _floats_in_range(values: NDArray[Any], name: str, notes: list[str]) -> Float
         count = int(values.size - np.count_nonzero(np.isfinite(values)))
         raise ImageError(f"{name}: {count} of {values.size} values are not finite (NaN or infinite).")
     if low >= 0 and high <= 1:
-        return values.astype(np.float32)
+        # Adding zero makes negative zeros positive; they would change the hash.
+        return values.astype(np.float32) + np.float32(0)
     # Halves keep the span of the largest floats finite.
     span = high / 2 - low / 2
     if span == 0:
@@ -177,7 +181,9 @@ def _over(
 
 
 def _is_gray(pixels: FloatImage) -> bool:
-    return bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())
+    # A few rows tell most colour images from gray ones.
+    few = pixels[:: 1 + pixels.shape[0] // 16]
+    return all(bool((part[..., :1] == part[..., 1:]).all()) for part in (few, pixels))
 
 
 def take(
@@ -198,10 +204,10 @@ def take(
 
 
 def _sealed(pixels: FloatImage) -> FloatImage:
-    """Return a read-only, C-contiguous copy, without negative zeros; as it is when it is one already."""
+    """Return a read-only, C-contiguous copy; as it is when it is one already."""
     if not pixels.flags.writeable and pixels.flags.c_contiguous and pixels.flags.owndata:
         return pixels
-    copy = np.add(pixels, np.float32(0), order="C", dtype=np.float32)
+    copy = np.array(pixels, dtype=np.float32, order="C", copy=True)
     copy.flags.writeable = False
     return copy
 

@@ -18,6 +18,7 @@ from texlab_core.images import as_exemplar
 GRAY8 = np.random.default_rng(0).integers(0, 256, (7, 9), dtype=np.uint8)
 RGB8 = np.random.default_rng(1).integers(0, 256, (7, 9, 3), dtype=np.uint8)
 GRAY16 = np.random.default_rng(2).integers(0, 65536, (7, 9), dtype=np.uint16)
+SRGB = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
 RGB16 = np.random.default_rng(3).integers(0, 65536, (7, 9, 3), dtype=np.uint16)
 
 
@@ -217,6 +218,23 @@ def test_tiff_cmyk():
     assert made.pixels[2, 2].tolist() == [1, 1, 1]
 
 
+def test_tiff_of_floats_with_a_profile_keeps_its_values_and_cmyk_is_refused():
+    array = np.random.default_rng(9).random((7, 9, 3)).astype(np.float32)
+    made = as_exemplar(tiff(array, photometric="rgb", iccprofile=imagecodecs.cms_profile("adobergb")))
+    assert np.array_equal(made.pixels, array)
+    assert made.notes == ("The colour profile was ignored, because it is applied to 8 and 16 bits only.",)
+    with pytest.raises(ImageError, match=r"is a CMYK TIFF of float32; 8 or 16 bits are read\.$"):
+        as_exemplar(tiff(np.zeros((4, 4, 4), np.float32), photometric="separated"))
+
+
+def test_cmyk_profile_of_another_kind_is_ignored():
+    inks = Image.fromarray(np.zeros((4, 4, 4), np.uint8), "CMYK")
+    made = as_exemplar(pillow(inks, "TIFF", icc_profile=SRGB))
+    assert (made.pixels == 1).all()
+    assert len(made.notes) == 3
+    assert made.notes[0] == "The colour profile is for rgb images and was ignored."
+
+
 def test_several_pages_and_frames_use_the_first_and_say_so():
     stack = np.stack([GRAY8, 255 - GRAY8, GRAY8 // 2])
     made = reads(tiff(stack, photometric="minisblack"), GRAY8, 255)
@@ -266,9 +284,6 @@ def test_damaged_portable_files(text, says):
     with pytest.raises(ImageError) as caught:
         as_exemplar(text, name="a.pgm")
     assert says in str(caught.value)
-
-
-SRGB = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])

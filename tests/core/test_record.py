@@ -382,7 +382,7 @@ CONTENT = {
     "not a PNG": {"encoding": "png", "base64": base64.b64encode(b"BM" + bytes(99)).decode()},
     "a damaged PNG": {"encoding": "png", "base64": png64(np.zeros((9, 9), np.uint8))[:60]},
     "another image": {"encoding": "png", "base64": png64(np.zeros((9, 9), np.uint8))},
-    "an image with alpha": {"encoding": "png", "base64": base64.b64encode(b"\x89PNG").decode()},
+    "an image with alpha": {"encoding": "png", "base64": png64(np.full((9, 9, 4), 7, np.uint8))},
     "no shape": {"encoding": "float32", "base64": packed(bytes(12))},
     "a shape of another type": {"encoding": "float32", "base64": packed(bytes(12)), "shape": "1x1x3"},
     "a shape of floats": {"encoding": "float32", "base64": packed(bytes(12)), "shape": [1.0, 1, 3]},
@@ -490,6 +490,20 @@ def test_damaged_files_are_one_sentence(tmp_path):
             with pytest.raises(RecipeError) as caught:
                 read_recipe(whole[: int(share * len(whole))])
             assert str(caught.value).endswith(".")
+
+
+def test_a_file_that_cannot_be_opened(tmp_path, monkeypatch):
+    write_image(tmp_path / "out.png", noise())
+
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("builtins.open", refuse)
+    with pytest.raises(RecipeError, match=r"out\.png: cannot be opened \(Permission denied\)\.$"):
+        read_recipe(tmp_path / "out.png")
+    monkeypatch.undo()
+    with pytest.raises(RecipeError, match=r"^The recipe of the file is damaged\.$"):
+        read_recipe(b"II*\0" + bytes(3))
 
 
 def test_reading_never_unpickles(monkeypatch):
