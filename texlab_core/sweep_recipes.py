@@ -1,0 +1,326 @@
+"""Sweeps as versioned JSON: the ready-made ones, files of the user's, and what a contact sheet carries."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from texlab_core import strict_json
+from texlab_core.errors import InputError, RecipeError
+from texlab_core.inputs import Crop, ImageInput, exemplar_of
+from texlab_core.params import frozen_mapping
+from texlab_core.png_text import SIGNATURE, read_text
+from texlab_core.registry import find_method
+from texlab_core.resources import resource
+from texlab_core.run import Job, check_seed, check_size
+from texlab_core.sweep import Sweep, Vary, check_knob, spread
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from texlab_core.params import Params
+
+FORMAT = "texlab-sweep"
+VERSION = 1
+TEXT_KEY = "texlab-sweep"
+_KEYS = (
+    "format",
+    "version",
+    "name",
+    "note",
+    "method",
+    "parameters",
+    "vary",
+    "size",
+    "seed",
+    "exemplar",
+    "versions",
+)
+_Data = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class ExemplarChoice:
+    """Which exemplar a sweep was made for.
+
+    Parameters
+    ----------
+    name
+        "gallery:NAME", or the name of a file.
+    scale, crop
+        How it was taken from its source.
+    sha256
+        Hash of its pixels, where that is known.
+    """
+
+    name: str
+    scale: float = 1.0
+    crop: Crop | None = None
+    sha256: str = ""
+
+    @classmethod
+    def of(cls, exemplar: ImageInput) -> ExemplarChoice:
+        """Describe an exemplar."""
+        origin = exemplar.origin
+        if origin is None:
+            return cls(exemplar.name, sha256=exemplar.sha256)
+        return cls(exemplar.name, origin.scale, origin.crop, exemplar.sha256)
+
+    def load(self) -> ImageInput:
+        """Return the exemplar; raises ``ImageError`` when it cannot be read."""
+        from texlab_core.images import as_exemplar
+
+        return as_exemplar(self.name, scale=self.scale, crop=self.crop)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepRecipe:
+    """A sweep without its exemplar's pixels.
+
+    Parameters
+    ----------
+    name
+        For lists and for ``--recipe``.
+    method
+        Id of a registered method.
+    axes
+        One or two knobs and their values.
+    parameters
+        JSON values of the knobs that differ from the defaults in every cell.
+    note
+        What it shows.
+    size
+        Height and width of the cells; None takes the exemplar's.
+    seed
+        Of every cell, unless it is varied.
+    exemplar
+        What it was made for; None leaves the choice to the user.
+    """
+
+    name: str
+    method: str
+    axes: tuple[Vary, ...]
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
+    size: tuple[int, int] | None = None
+    seed: int = 0
+    exemplar: ExemplarChoice | None = None
+
+    @property
+    def params(self) -> Params:
+        """The parameters that all cells share, but for the varied ones."""
+        return find_method(self.method).params.from_json(self.parameters)
+
+    def sweep(self, exemplar: ImageInput | None = None) -> Sweep:
+        """Return the sweep over an exemplar (its own when None).
+
+        Raises
+        ------
+        InputError
+            When there is no exemplar, or the method cannot work with it.
+        """
+        if exemplar is None:
+            if self.exemplar is None:
+                raise RecipeError(f"The sweep {self.name} does not say for which exemplar; name one.")
+            exemplar = self.exemplar.load()
+        size: Any = self.size
+        inputs = {"exemplar": exemplar}
+        return Sweep(
+            Job(method=self.method, inputs=inputs, params=self.params, size=size, seed=self.seed), self.axes
+        )
+
+    @classmethod
+    def of(cls, sweep: Sweep, name: str, note: str = "") -> SweepRecipe:
+        """Describe a sweep."""
+        base = sweep.base
+        return cls(
+            name=name,
+            method=base.method,
+            axes=sweep.axes,
+            parameters=base.params.to_json(),
+            note=note,
+            size=base.size,
+            seed=base.seed,
+            exemplar=ExemplarChoice.of(exemplar_of(base.inputs)),
+        )
+
+    def to_json(self) -> _Data:
+        """Return it as JSON data."""
+        data: _Data = {"format": FORMAT, "version": VERSION, "name": self.name, "note": self.note}
+        data |= {"method": self.method, "parameters": dict(self.parameters)}
+        data["vary"] = [
+            {"name": axis.name, "values": [_plain(each) for each in axis.values]} for axis in self.axes
+        ]
+        if self.size is not None:
+            data["size"] = {"width": self.size[1], "height": self.size[0]}
+        data["seed"] = self.seed
+        if self.exemplar is not None:
+            chosen = {
+                key: value for key, value in dataclasses.asdict(self.exemplar).items() if value not in (None, "")
+            }
+            data["exemplar"] = chosen
+        return data
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, bool | int | float | str) else value.to_json()
+
+
+def sweep_recipe_from_json(data: object, *, what: str = "the sweep") -> SweepRecipe:
+    """Build a recipe from JSON data.
+
+    An axis is ``{"name", "values": [...]}`` or ``{"name", "from", "to", "count", "log": false}``.
+
+    Raises
+    ------
+    RecipeError
+        With one sentence that starts with ``what``.
+    """
+    try:
+        return _from_json(data)
+    except InputError as bad:
+        raise RecipeError(f"{what[:1].upper()}{what[1:]} cannot be used: {bad}") from bad
+
+
+def _from_json(data: object) -> SweepRecipe:
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise RecipeError(f'it is no sweep (a JSON object with "format": "{FORMAT}" was expected).')
+    version = data.get("version")
+    if type(version) is not int or version < 1:
+        raise RecipeError(f"version: must be a whole number from 1, got {strict_json.shorten(version)}.")
+    if version > VERSION:
+        raise RecipeError(
+            f"it has version {version}, made by a newer TexLab, and only version {VERSION} is known."
+        )
+    for key in data:
+        if key not in _KEYS:
+            raise RecipeError(f"key: must be one of {', '.join(_KEYS)}, got {strict_json.shorten(key)}.")
+    method = find_method(_typed(data, "method", str))
+    parameters = _typed(data, "parameters", dict, {})
+    complete = method.params.from_json(parameters).to_json()
+    vary = _typed(data, "vary", list)
+    if not 1 <= len(vary) <= 2:
+        raise RecipeError(f"vary: must hold one or two knobs, got {len(vary)}.")
+    return SweepRecipe(
+        name=_text(data, "name", 80),
+        method=method.id,
+        axes=tuple(_axis(each, method.params) for each in vary),
+        parameters=frozen_mapping({name: complete[name] for name in parameters}),
+        note=_text(data, "note", 4000, ""),
+        size=_size(data.get("size")),
+        seed=check_seed(data.get("seed", 0)),
+        exemplar=_exemplar(data.get("exemplar")),
+    )
+
+
+def _typed(data: _Data, key: str, kind: type[Any], default: Any = None) -> Any:
+    value = data.get(key, default)
+    if not isinstance(value, kind):
+        noun = {"str": "text", "dict": "a JSON object", "list": "a list"}[kind.__name__]
+        raise RecipeError(f"{key}: must be {noun}, got {strict_json.shorten(value)}.")
+    return value
+
+
+def _text(data: _Data, key: str, longest: int, default: str | None = None) -> str:
+    value: str = _typed(data, key, str, default)
+    if len(value) > longest or not value.replace("\n", "").isprintable():
+        raise RecipeError(
+            f"{key}: must be at most {longest} printable characters, got {strict_json.shorten(value)}."
+        )
+    return value
+
+
+def _axis(data: object, params: type[Params]) -> Vary:
+    if not isinstance(data, dict):
+        raise RecipeError(f"vary: must hold JSON objects, got {strict_json.shorten(data)}.")
+    name = _typed(data, "name", str)
+    if set(data) == {"name", "values"}:
+        return Vary.of(name, data["values"], params)
+    if not {"from", "to", "count"} <= set(data) <= {"name", "from", "to", "count", "log"}:
+        raise RecipeError(f"vary: {name} must have either values or from, to, count and log.")
+    if not isinstance(log := data.get("log", False), bool):
+        raise RecipeError(f"vary: log must be true or false, got {strict_json.shorten(log)}.")
+    knob = check_knob(name, params, number=True)
+    return Vary(name, spread(knob, knob.check(data["from"]), knob.check(data["to"]), data["count"], log=log))
+
+
+def _size(data: object) -> tuple[int, int] | None:
+    if data is None:
+        return None
+    if not isinstance(data, dict) or set(data) != {"width", "height"}:
+        raise RecipeError(f"size: must hold a width and a height, got {strict_json.shorten(data)}.")
+    return check_size((data["height"], data["width"]))
+
+
+def _exemplar(data: object) -> ExemplarChoice | None:
+    if data is None:
+        return None
+    if not isinstance(data, dict) or not {"name"} <= set(data) <= {"name", "scale", "crop", "sha256"}:
+        raise RecipeError(f"exemplar: must hold a name, got {strict_json.shorten(data)}.")
+    scale = data.get("scale", 1.0)
+    if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0 < scale <= 1:
+        raise RecipeError(
+            f"exemplar: scale must be a number above 0 and at most 1, got {strict_json.shorten(scale)}."
+        )
+    sha256 = _text(data, "sha256", 64, "")
+    return ExemplarChoice(_text(data, "name", 4096), float(scale), _crop(data.get("crop")), sha256)
+
+
+def _crop(data: object) -> Crop | None:
+    if data is None:
+        return None
+    keys = [each.name for each in dataclasses.fields(Crop)]
+    if not isinstance(data, dict) or set(data) != set(keys) or any(type(data[key]) is not int for key in keys):
+        raise RecipeError(f"exemplar: crop must hold {', '.join(keys)}, got {strict_json.shorten(data)}.")
+    return Crop(**data)
+
+
+def bundled_sweeps(method: str | None = None) -> tuple[SweepRecipe, ...]:
+    """Return the sweeps that come with the program (of one method), by name."""
+    found = []
+    for file in resource("sweeps").iterdir():
+        if file.name.endswith(".json"):
+            what = f"the bundled sweep {file.name}"
+            data = strict_json.loads(file.read_bytes(), what=what, error=RecipeError)
+            found.append(sweep_recipe_from_json(data, what=what))
+    return tuple(sorted((each for each in found if method in (None, each.method)), key=lambda each: each.name))
+
+
+def find_sweep(source: str) -> SweepRecipe:
+    """Return what ``FILE|NAME`` means: a JSON file, the contact sheet of an earlier sweep, or a bundled one.
+
+    Raises
+    ------
+    RecipeError
+        When there is none, or it cannot be used.
+    """
+    path = Path(source)
+    if path.suffix.lower() == ".json":
+        what = f"the sweep {path.name}"
+        return sweep_recipe_from_json(strict_json.load(path, what=what, error=RecipeError), what=what)
+    if path.suffix.lower() == ".png":
+        return _from_sheet(path)
+    known = {each.name: each for each in bundled_sweeps()}
+    if source in known:
+        return known[source]
+    close = difflib.get_close_matches(source, known, n=1)
+    hint = f"did you mean {close[0]}?" if close else f"there are {', '.join(known)}"
+    raise RecipeError(f"There is no sweep called {strict_json.shorten(source)} ({hint}).")
+
+
+def _from_sheet(path: Path) -> SweepRecipe:
+    try:
+        with open(path, "rb") as file:
+            is_png = file.read(len(SIGNATURE)) == SIGNATURE
+            text = read_text(file, TEXT_KEY, strict_json.MAX_BYTES) if is_png else None
+    except OSError as bad:
+        raise RecipeError(f"{path}: cannot be opened ({bad.strerror}).") from bad
+    except ValueError as bad:
+        raise RecipeError(f"The sheet {path.name} cannot be used ({bad}).") from bad
+    if text is None:
+        raise RecipeError(f"{path.name} is no contact sheet of a sweep: it carries no recipe.")
+    what = f"the sheet {path.name}"
+    return sweep_recipe_from_json(strict_json.loads(text, what=what, error=RecipeError), what=what)
