@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 @njit
 def _same_offset(source: Source, row: int, column: int, drow: int, dcolumn: int) -> bool:
     """Tell whether a pixel continues the source of its left (drow 0) or upper (dcolumn 0) neighbour."""
-    here, there = source[row, column], source[row - drow, column - dcolumn]
-    return bool(here[0] >= 0 and there[0] >= 0 and here[0] - there[0] == drow and here[1] - there[1] == dcolumn)
+    y, there = source[row, column, 0], source[row - drow, column - dcolumn, 0]
+    x, beside = source[row, column, 1], source[row - drow, column - dcolumn, 1]
+    return bool(y >= 0 and there >= 0 and y - there == drow and x - beside == dcolumn)
 
 
 @njit
