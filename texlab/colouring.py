@@ -48,6 +48,26 @@ class Scale:
             return float(np.expm1(low + place * (high - low)))
         return self.low + place * (self.high - self.low)
 
+    def ticks(self) -> list[tuple[float, float]]:
+        """Return (place, value) of both ends and of round numbers between them that keep clear of the ends."""
+        if self.scaling == "log":
+            rounds = [float(10**power) for power in range(19) if self.low < 10**power < self.high]
+        else:
+            step = _round_step((self.high - self.low) / 4)
+            first = np.ceil(self.low / step) if step else 0
+            rounds = [float(k * step) for k in np.arange(first, first + 12) if k * step < self.high]
+        places = [(float(self.place(value)), value) for value in rounds]
+        inner = [each for each in places if 0.08 < each[0] < 0.92]
+        return [(0.0, self.low), *inner, (1.0, self.high)] if self.high > self.low else [(0.0, self.low)]
+
+
+def _round_step(step: float) -> float:
+    """Return the nearest of 1, 2, 5 times a power of ten that is not below ``step``."""
+    if not step > 0:
+        return 0.0
+    power = 10.0 ** np.floor(np.log10(step))
+    return float(next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9)))
+
 
 def lookup_table(stops: tuple[tuple[int, int, int], ...], size: int = 256) -> NDArray[np.uint8]:
     """Return ``size`` colours interpolated between the stops, (size, 3) uint8."""

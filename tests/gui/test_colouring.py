@@ -30,6 +30,15 @@ def test_log_scale_inverts_itself():
     assert [scale.value(float(place)) for place in places] == pytest.approx([0, 9, 99, 999], rel=1e-4, abs=1e-4)
 
 
+def test_ticks_are_round_and_lie_on_the_bar():
+    assert [value for _, value in Scale(0.0, 1.0).ticks()] == pytest.approx([0, 0.5, 1])
+    assert [value for _, value in Scale(-3.0, 5.2).ticks()] == pytest.approx([-3, 0, 5.2])
+    assert [value for _, value in Scale(0.1, 0.87).ticks()] == pytest.approx([0.1, 0.2, 0.4, 0.6, 0.8, 0.87])
+    assert Scale(2.0, 2.0).ticks() == [(0.0, 2.0)]
+    for place, value in Scale(0.1, 900, "log").ticks():
+        assert Scale(0.1, 900, "log").value(place) == pytest.approx(value, rel=1e-4)
+
+
 @pytest.mark.parametrize("data", [np.zeros((3, 4)), np.full((3, 4), 7.0)])
 def test_a_constant_map_has_one_colour(data):
     for kind in ("count", "scalar"):

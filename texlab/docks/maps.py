@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from texlab import colouring
 from texlab.dock_frame import FramedDock, Same, replace_items
-from texlab.plots import ColourBar, PicturePane, number
+from texlab.plots import ColourBar, PicturePane, number, pg
 from texlab.scene import Question
 
 if TYPE_CHECKING:
@@ -90,10 +90,13 @@ class MapsDock(FramedDock):
         self.bar = ColourBar("maps-bar")
         self.key = PicturePane("maps-key", "Colour of every place of the exemplar")
         self.key.hovered.connect(self._hover_key)
+        self.mark = pg.ScatterPlotItem(size=13, symbol="o", brush=None, pxMode=True)
+        self.key.view.addItem(self.mark, ignoreBounds=True)
         self.regions = QListWidget()
         self.regions.setObjectName("maps-regions")
         self.regions.setAccessibleName("Largest regions")
         self.regions.setToolTip("The largest regions; choose one to see it alone, choose it again to see all")
+        self.regions.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.regions.itemActivated.connect(self._choose_region)
         self.regions.itemClicked.connect(self._choose_region)
         self._region = 0
@@ -119,6 +122,7 @@ class MapsDock(FramedDock):
         """Give panes and bar their colours."""
         for each in (self.pane, self.key, self.bar):
             each.set_theme(theme)
+        self.mark.setPen(pg.mkPen("#000000", width=2))
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the chosen map of the chosen column."""
@@ -151,7 +155,7 @@ class MapsDock(FramedDock):
             self.key.set_picture(answer.key)
             self.legend.setCurrentWidget(self._key_page)
         elif answer.scale is not None:
-            ticks = [(place, number(answer.scale.value(place))) for place in (0.0, 0.25, 0.5, 0.75, 1.0)]
+            ticks = [(place, number(value)) for place, value in answer.scale.ticks()]
             self.bar.show_scale(colouring.map_table(answer.shown), ticks)
             self.legend.setCurrentWidget(self.bar)
         else:
@@ -166,7 +170,7 @@ class MapsDock(FramedDock):
         for label, pixels in answer.regions:
             swatch = QPixmap(12, 12)
             swatch.fill(QColor(*(int(part) for part in table[label])))
-            item = QListWidgetItem(QIcon(swatch), f"{pixels} pixels, {pixels / total:.1%}")
+            item = QListWidgetItem(QIcon(swatch), f"{pixels} px, {pixels / total:.1%}")
             item.setData(Qt.ItemDataRole.UserRole, label)
             self.regions.addItem(item)
             if label == answer.region:
@@ -185,6 +189,7 @@ class MapsDock(FramedDock):
 
     def _hover(self, row: int, column: int) -> None:
         answer: MapsAnswer | None = self.answer
+        self.mark.clear()
         if answer is None or row < 0:
             self.readout.setText("")
             self.bar.set_mark(None)
@@ -193,6 +198,10 @@ class MapsDock(FramedDock):
         self.readout.setText(f"{column}, {row}: {describe(answer, value)}")
         if answer.scale is not None:
             self.bar.set_mark(float(answer.scale.place(value)))
+        elif answer.key is not None and answer.extent is not None and min(value) >= 0:
+            # Where the pixel came from is marked on the key.
+            (height, width), (rows, columns) = answer.extent, answer.key.shape[:2]
+            self.mark.setData([(value[1] + 0.5) * columns / width], [(value[0] + 0.5) * rows / height])
 
     def _hover_key(self, row: int, column: int) -> None:
         answer: MapsAnswer | None = self.answer
