@@ -1,0 +1,1 @@
+"""Texture models made of the marginal distributions of subbands (Heeger and Bergen)."""

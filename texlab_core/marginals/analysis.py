@@ -1,0 +1,202 @@
+"""Analysis: the sorted pixels and subbands of every colour axis of an exemplar.
+
+Reference: Heeger and Bergen 1995, sections 2.3 (match-texture), 2.4 (edges) and 2.5 (colour).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from texlab_core.color import ColourAxes, principal_axes
+from texlab_core.stats.histogram import Sample, sorted_sample
+from texlab_core.transforms import gaussian, laplacian, steerable
+from texlab_core.transforms.fourier import periodic_component
+from texlab_core.transforms.steerable import BandKey, Transform
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from texlab_core.steps import FloatImage
+
+Pyramid = Literal["steerable", "laplacian", "textbook"]
+Border = Literal["reflect", "periodic", "wrap"]
+
+# A band this much weaker than its plane is measured against the plane: rounding has no distribution to match.
+FAINT = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Target:
+    """The distribution that one subband is to have.
+
+    Parameters
+    ----------
+    sample
+        Its values in the exemplar, sorted.
+    spread
+        Standard deviation that distances are divided by.
+    """
+
+    sample: Sample
+    spread: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaneModel:
+    """The targets of one colour axis.
+
+    Parameters
+    ----------
+    pixels
+        Of the plane itself.
+    bands
+        Of every subband. Low-pass residuals are there for every number of levels up to the largest, for results
+        that are too small for all of them.
+    """
+
+    pixels: Target
+    bands: Mapping[BandKey, Target]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextureModel:
+    """Everything that Heeger and Bergen's method knows of an exemplar.
+
+    Parameters
+    ----------
+    axes
+        Principal axes of the colours; None for a gray image, whose one plane is the image itself.
+    planes
+        One for each axis; none for a constant image.
+    palette
+        Sorted values of each channel.
+    levels
+        Number of levels analyzed: as many as were asked for and fit.
+    """
+
+    axes: ColourAxes | None
+    planes: tuple[PlaneModel, ...]
+    palette: tuple[Sample, ...]
+    levels: int
+
+    @property
+    def channels(self) -> int:
+        """Number of channels of the exemplar."""
+        return len(self.palette)
+
+    def to_planes(self, image: FloatImage) -> NDArray[np.float32]:
+        """Return the planes (A, H, W) of an image (H, W, C)."""
+        return image[None, ..., 0] if self.axes is None else self.axes.to_axes(image)
+
+    def to_image(self, planes: Sequence[NDArray[np.float32]], size: tuple[int, int]) -> FloatImage:
+        """Return the image (H, W, C) of planes; not clipped."""
+        if self.axes is not None and planes:
+            return self.axes.from_axes(np.stack(planes))
+        if planes:
+            return np.repeat(planes[0][..., None], self.channels, axis=2)
+        middle = np.array([sample[sample.size // 2] for sample in self.palette], np.float32)
+        return np.broadcast_to(middle, (*size, self.channels)).copy()
+
+
+def max_levels(size: Sequence[int], pyramid: Pyramid) -> int:
+    """Return the largest number of levels that a pyramid of this size can have."""
+    return steerable.max_levels(size) if pyramid == "steerable" else max(0, gaussian.max_levels(size) - 1)
+
+
+def band_keys(pyramid: Pyramid, levels: int, orientations: int) -> tuple[BandKey, ...]:
+    """Return the places of all subbands, from fine to coarse."""
+    if pyramid == "steerable":
+        return steerable.band_keys(levels, orientations)
+    return (*(BandKey("laplacian", level) for level in range(levels)), BandKey("lowpass", levels))
+
+
+def expansion(pyramid: Pyramid) -> gaussian.Expansion:
+    """Return how a Laplacian pyramid expands: the textbook's replicates."""
+    return "replicate" if pyramid == "textbook" else "interpolate"
+
+
+def analyze(
+    image: FloatImage, pyramid: Pyramid, scales: int, orientations: int, border: Border
+) -> Generator[float, None, TextureModel]:
+    """Analyze an exemplar.
+
+    Parameters
+    ----------
+    image
+        (H, W, C) float32 in [0, 1].
+    pyramid, scales, orientations, border
+        As in the method's parameters; fewer scales are used when the image is too small.
+
+    Yields
+    ------
+    float
+        Share of the work that is done.
+
+    Returns
+    -------
+    TextureModel
+        Targets of every plane and band.
+    """
+    levels = min(scales, max_levels(image.shape, pyramid))
+    palette = tuple(sorted_sample(image[..., channel]) for channel in range(image.shape[2]))
+    if np.all(image == image[..., :1]):
+        axes, planes = None, [np.ascontiguousarray(image[..., 0])]
+        if palette[0][0] == palette[0][-1]:
+            planes = []
+    else:
+        axes = principal_axes(image)
+        planes = list(axes.to_axes(image))
+    count = len(band_keys(pyramid, levels, orientations)) + levels
+    models = []
+    for index, plane in enumerate(planes):
+        bands: dict[BandKey, Target] = {}
+        pixels = _target(plane, 0.0)
+        for key, band in _bands(plane, pyramid, levels, orientations, border):
+            bands[key] = _target(band, pixels.spread * FAINT)
+            yield (index + len(bands) / count) / len(planes)
+        models.append(PlaneModel(pixels, bands))
+    return TextureModel(axes, tuple(models), palette, levels)
+
+
+def _target(values: NDArray[Any], floor: float) -> Target:
+    return Target(sorted_sample(values), max(float(values.std(dtype=np.float64)), floor))
+
+
+def _bands(
+    plane: NDArray[np.float32], pyramid: Pyramid, levels: int, orientations: int, border: Border
+) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
+    """Yield every subband, and the low-pass residual of every number of levels."""
+    if border == "periodic":
+        plane = periodic_component(plane)
+    if pyramid == "steerable":
+        return _steerable_bands(plane, levels, orientations, mirrored=border == "reflect")
+    return _laplacian_bands(plane, levels, "reflect" if border == "reflect" else "periodic", expansion(pyramid))
+
+
+def _steerable_bands(
+    plane: NDArray[np.float32], levels: int, orientations: int, *, mirrored: bool
+) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
+    size = plane.shape
+    whole = steerable.mirror(plane) if mirrored else plane
+    transform = Transform.of(whole, levels, orientations)
+    spectrum = transform.forward(whole)
+    residuals = [BandKey("lowpass", level) for level in range(levels)]
+    for key in (*transform.keys, *residuals):
+        band = transform.band(spectrum, key)
+        yield key, steerable.quadrant(band, size, key.level) if mirrored else band
+
+
+def _laplacian_bands(
+    plane: NDArray[np.float32], levels: int, border: gaussian.Border, mode: gaussian.Expansion
+) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
+    for level in range(levels):
+        yield BandKey("lowpass", level), plane
+        band, coarser = laplacian.build(plane, 1, border, mode)
+        yield BandKey("laplacian", level), band
+        plane = coarser
+    yield BandKey("lowpass", levels), plane

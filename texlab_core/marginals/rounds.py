@@ -1,0 +1,149 @@
+"""One round of match-texture: take a plane apart, match every subband, put it together, match the pixels.
+
+The plane is taken as periodic, so that the result tiles. All generators yield the number of samples that they have
+worked through since the last time.
+
+Reference: Heeger and Bergen 1995, section 2.3; Forsyth and Ponce, algorithm 11.4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from texlab_core.marginals.analysis import PlaneModel, Pyramid, Target, band_keys, expansion
+from texlab_core.stats import histogram
+from texlab_core.transforms import laplacian
+from texlab_core.transforms.steerable import BandKey, Transform
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator
+
+Plane = NDArray[np.float32]
+Matching = Literal["exact", "bins"]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The pyramid of a synthesis and how its subbands are matched."""
+
+    pyramid: Pyramid
+    levels: int
+    orientations: int
+    matching: Matching = "exact"
+
+    @property
+    def keys(self) -> tuple[BandKey, ...]:
+        """Places of the subbands, from fine to coarse."""
+        return band_keys(self.pyramid, self.levels, self.orientations)
+
+
+def match(values: Plane, target: Target, matching: Matching, key: int) -> Generator[int, None, float]:
+    """Match an array in place; return its W1 distance before, divided by the target's spread.
+
+    Parameters
+    ----------
+    values
+        float32, C-contiguous; overwritten.
+    target
+        The distribution wanted.
+    matching
+        ``exact`` by rank, or ``bins`` through the paper's tables.
+    key
+        For the random order of equal values.
+    """
+    ranked = values if matching == "exact" else values.copy()
+    pieces = histogram.match_ranks_in_place(ranked, target.sample, key)
+    while True:
+        try:
+            next(pieces)
+        except StopIteration as end:
+            distance: float = end.value
+            break
+        yield values.size // 8
+    if matching == "bins":
+        values[...] = histogram.match_tables(values, histogram.tables(target.sample))
+    yield values.size
+    return distance / target.spread if target.spread > 0 else 0.0
+
+
+def match_round(
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+    """Do one round.
+
+    Parameters
+    ----------
+    plane
+        (H, W) float32.
+    model
+        Targets of the exemplar's plane.
+    plan
+        How.
+    tie_key
+        Gives a key for each place in the order of ``plan.keys``, and one more for the pixels.
+
+    Returns
+    -------
+    plane
+        (H, W) float32.
+    distances
+        (bands,) float64: W1 / sd of every subband before it was matched.
+    """
+    take_apart = _steerable_round if plan.pyramid == "steerable" else _laplacian_round
+    plane, distances = yield from take_apart(plane, model, plan, tie_key)
+    yield from match(plane, model.pixels, plan.matching, tie_key(len(plan.keys)))
+    return plane, distances
+
+
+def measure(plane: Plane, model: PlaneModel, plan: Plan) -> Generator[int, None, NDArray[np.float64]]:
+    """Return the distance W1 / sd of every subband of a plane, (bands,) float64."""
+    distances = np.zeros(len(plan.keys))
+    if plan.pyramid == "steerable":
+        transform = Transform.of(plane, plan.levels, plan.orientations)
+        spectrum = transform.forward(plane)
+        bands = (transform.band(spectrum, key) for key in plan.keys)
+    else:
+        bands = (band.copy() for band in _laplacian_bands(plane, plan))
+    yield plane.size
+    for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True)):
+        distances[index] = yield from match(band, model.bands[key], "exact", 0)
+    return distances
+
+
+def _steerable_round(
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+    distances = np.zeros(len(plan.keys))
+    transform = Transform.of(plane, plan.levels, plan.orientations)
+    spectrum = transform.forward(plane)
+    yield plane.size
+    total = transform.empty_sum()
+    for index, key in enumerate(plan.keys):
+        band = transform.band(spectrum, key)
+        distances[index] = yield from match(band, model.bands[key], plan.matching, tie_key(index))
+        transform.add(total, key, band)
+    plane = transform.inverse(total)
+    yield plane.size
+    return plane, distances
+
+
+def _laplacian_round(
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+    distances = np.zeros(len(plan.keys))
+    bands = _laplacian_bands(plane, plan)
+    yield plane.size
+    for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True)):
+        distances[index] = yield from match(band, model.bands[key], plan.matching, tie_key(index))
+    collapsed = laplacian.collapse(bands, "periodic", expansion(plan.pyramid))
+    yield plane.size
+    return np.ascontiguousarray(collapsed), distances
+
+
+def _laplacian_bands(plane: Plane, plan: Plan) -> list[Plane]:
+    bands = laplacian.build(plane, plan.levels, "periodic", expansion(plan.pyramid))
+    return [np.ascontiguousarray(band) for band in bands[:-1]] + [bands[-1].copy()]
