@@ -21,6 +21,7 @@ from texlab.jobs import Slots, Task, Worker
 from texlab.memory import memory_text
 from texlab.opening import IMAGE_SUFFIXES, Opener
 from texlab.pictures import describe_pixel, to_picture
+from texlab.preset_manager import PresetManager
 from texlab.session import Column, Session, State
 from texlab.settings import columns_from_json, seed_and_size, session_to_json
 from texlab.views.help import HelpWindow
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 FIRST_TEXTURE = "gallery:structured-pebbles"
+FIRST_CROP = Crop(64, 64, 128, 128)
 THUMBNAIL = 48
 MEMORY_MS = 2000
 
@@ -60,6 +62,7 @@ class Explorer(QObject):
         self.session = Session(self)
         self.controller = Controller(self.session, themes, self)
         self.opener = Opener(self.session, self.controller, settings)
+        self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
         self.crash = CrashHandler(self)
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
         self.workspace.set_theme(themes.theme)
@@ -113,7 +116,7 @@ class Explorer(QObject):
             if name in known:
                 self.opener.open(str(name), crop=box, scale=factor)
                 return
-        self.opener.open(FIRST_TEXTURE)
+        self.opener.open(FIRST_TEXTURE, crop=FIRST_CROP, scale=1.0)
 
     def close(self) -> None:
         """Remember the session and stop every thread."""
@@ -369,6 +372,7 @@ class Explorer(QObject):
         self.window.parameters.show_column(
             self.session.selected_id, method, column.params if column is not None else None
         )
+        self.presets.show_method(column.method if column is not None else "")
         self._show_choice()
 
     def _show_choice(self) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from texlab_core.run import Job
     from texlab_core.steps import Result
 
-COMFORTABLE_SIDE = 512
+COMFORTABLE_SIDE = 256
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
 
 
@@ -61,6 +61,16 @@ def sample_of(image: ImageInput, path: str | None) -> Sample:
     side = max(image.size)
     scale = 1.0 if side <= COMFORTABLE_SIDE else round(COMFORTABLE_SIDE / side, 3)
     return Sample(image, scale, None, path)
+
+
+def with_crop_of(sample: Sample, before: Sample | None) -> Sample:
+    """Keep the crop from one texture of the gallery to the next, so that they can be compared."""
+    if before is None or before.crop is None or before.scale != sample.scale:
+        return sample
+    crop, (height, width) = before.crop, sample.source.size
+    both = all(each.source.name.startswith("gallery:") for each in (before, sample))
+    fits = crop.top + crop.height <= height and crop.left + crop.width <= width
+    return dataclasses.replace(sample, crop=crop) if both and fits else sample
 
 
 def restored(state: State, opened: Opened) -> tuple[State, int]:
@@ -115,6 +125,8 @@ class Opener:
         sample = sample_of(opened.image, opened.path)
         if scale is not None:
             sample = dataclasses.replace(sample, scale=scale, crop=crop)
+        else:
+            sample = with_crop_of(sample, self._session.state.sample)
         self._session.set_sample(sample)
         if opened.image.notes:
             self._controller.said.emit(" ".join(opened.image.notes))

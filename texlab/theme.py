@@ -183,7 +183,7 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     # Fusion outlines check boxes with the darkened window colour, which a dark theme swallows.
     boxes = palette(theme)
     boxes.setColor(QPalette.ColorRole.Base, QColor(theme.border if theme.name == "dark" else theme.base))
-    application.setPalette(boxes, "QCheckBox")
+    application.setPalette(boxes, "QCheckBox")  # type: ignore[arg-type]  # Qt wants text
     application.setStyleSheet(stylesheet(theme))
 
 

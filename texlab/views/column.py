@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from texlab.theme import Theme
     from texlab.views.image_pane import ViewLink
 
+STATUS_LINES = 3
 _SIGNS = {
     "idle": "",
     "waiting": "waits for a core",
@@ -102,7 +103,8 @@ class ColumnView(QFrame):
         self.line.setProperty("role", "muted")
         self.line.setWordWrap(True)
         self.line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.line.setMinimumHeight(self.line.fontMetrics().height() * 2)
+        # The same height in all columns: the pictures stand side by side at the same level.
+        self.line.setFixedHeight(self.line.fontMetrics().lineSpacing() * STATUS_LINES + 2)
         self.line.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.line.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         head = QHBoxLayout()
@@ -148,7 +150,9 @@ class ColumnView(QFrame):
         if before is None or before.picture is not scene.picture:
             self.pane.set_picture(scene.picture)
         self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
-        self.line.setText(status_line(scene))
+        text = status_line(scene)
+        self.line.setText(text)
+        self.line.setToolTip(text)
         role = "error" if scene.status == "failed" else "muted"
         if self.line.property("role") != role:
             self.line.setProperty("role", role)

@@ -9,6 +9,7 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
 
+from texlab.views.column import STATUS_LINES
 from texlab.views.image_pane import ImagePane, ViewLink
 from texlab_core.inputs import Crop
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from texlab.theme import Theme
 
 MIN_CROP = 8
+PROGRESS_HEIGHT = 7
 
 
 class ExemplarView(QFrame):
@@ -58,13 +60,14 @@ class ExemplarView(QFrame):
         self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
         self.scale_box.setKeyboardTracking(False)
-        self.scale_box.setPrefix("× ")
+        self.scale_box.setPrefix("×")
+        self.scale_box.setMaximumWidth(76)
         self.line = QLabel()
         self.line.setObjectName("exemplar-line")
         self.line.setProperty("role", "muted")
         self.line.setWordWrap(True)
         self.line.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.line.setMinimumHeight(self.line.fontMetrics().height() * 2)
+        self.line.setFixedHeight(self.line.fontMetrics().lineSpacing() * STATUS_LINES + 2)
         self.line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
@@ -81,7 +84,7 @@ class ExemplarView(QFrame):
         layout.setSpacing(3)
         layout.addLayout(head)
         layout.addWidget(self.pane, 1)
-        layout.addSpacing(4)
+        layout.addSpacing(PROGRESS_HEIGHT)
         layout.addWidget(self.line)
         self.crop_button.clicked.connect(self._toggle)
         self.scale_box.valueChanged.connect(self.scale_changed)

@@ -8,6 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.form import ParameterForm
+from texlab.views.preset_bar import PresetBar
 
 if TYPE_CHECKING:
     from texlab.scene import ColumnScene
@@ -45,7 +46,7 @@ class ParametersView(QWidget):
         self.scroll_area = QScrollArea()
         self.scroll_area.setObjectName("parameters-scroll")
         self.scroll_area.setWidgetResizable(True)
-        self.top = QVBoxLayout()
+        self.presets = PresetBar()
         buttons = QHBoxLayout()
         buttons.addWidget(self.reset_button)
         buttons.addWidget(self.help_button)
@@ -53,7 +54,7 @@ class ParametersView(QWidget):
         layout.setContentsMargins(6, 6, 6, 6)
         layout.addWidget(self.title)
         layout.addWidget(self.summary)
-        layout.addLayout(self.top)
+        layout.addWidget(self.presets)
         layout.addWidget(self.scroll_area, 1)
         layout.addLayout(buttons)
         self.form: ParameterForm | None = None
