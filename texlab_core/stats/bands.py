@@ -1,0 +1,227 @@
+"""Subbands for looking at: one plane of an image split by any of the pyramids, and put together with other gains.
+
+Nothing here is used for synthesis. Borders are reflected, so that an image that does not tile shows no edges that
+it does not have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from texlab_core.transforms import gaussian, laplacian, steerable
+from texlab_core.transforms.steerable import BandKey
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from texlab_core.steps import FloatImage
+
+PyramidKind = Literal["steerable", "laplacian", "gaussian"]
+Channel = Literal["luma", "red", "green", "blue", "axis 1", "axis 2", "axis 3"]
+CHANNELS: tuple[Channel, ...] = get_args(Channel)
+
+# ITU-R BT.601, for values as stored.
+LUMA = (0.299, 0.587, 0.114)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Band:
+    """One subband.
+
+    Parameters
+    ----------
+    key
+        Its place; ``kind`` is highpass, oriented, laplacian or lowpass.
+    plane
+        (h, w) float32.
+    title
+        Name in words, with the angle of an oriented band.
+    label
+        Name for a small place.
+    """
+
+    key: BandKey
+    plane: NDArray[np.float32]
+    title: str
+    label: str
+
+    @property
+    def signed(self) -> bool:
+        """Whether the values scatter around zero."""
+        return self.key.kind != "lowpass"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Projection:
+    """How one plane is taken from an image: the sum of ``weights`` times the channels less ``offset``.
+
+    Parameters
+    ----------
+    weights
+        (C,) float64.
+    offset
+        Subtracted from the sum.
+    back
+        (C,) float64: what a change by 1 in the plane changes in the channels.
+    """
+
+    weights: NDArray[np.float64]
+    offset: float
+    back: NDArray[np.float64]
+
+    def plane(self, image: FloatImage) -> NDArray[np.float32]:
+        """Return the plane (H, W) of an image (H, W, C)."""
+        if image.shape[2] == 1:
+            return np.ascontiguousarray(image[..., 0])
+        total = np.full(image.shape[:2], -np.float32(self.offset), np.float32)
+        for channel, weight in enumerate(self.weights.astype(np.float32)):
+            if weight:
+                total += image[..., channel] * weight
+        return total
+
+
+def channel_names(channels: int) -> tuple[Channel, ...]:
+    """Return the planes that an image with so many channels has; gray has one, called luma."""
+    return CHANNELS if channels == 3 else CHANNELS[:1]
+
+
+def projection(exemplar: FloatImage, channel: Channel) -> Projection:
+    """Return how a plane is taken; the principal axes are those of the exemplar's colours.
+
+    An axis that the colours do not have (a gray image in RGB has one) gives a plane of zeros.
+    """
+    channels = exemplar.shape[2]
+    if channels == 1 or channel == "luma":
+        weights = np.ones(1) if channels == 1 else np.array(LUMA)
+        return Projection(weights, 0.0, np.ones(channels))
+    if channel in CHANNELS[1:4]:
+        weights = np.eye(3)[CHANNELS.index(channel) - 1]
+        return Projection(weights, 0.0, weights)
+    from texlab_core.color import principal_axes
+
+    axes = principal_axes(exemplar)
+    number = CHANNELS.index(channel) - 4
+    direction = axes.directions[number] if number < len(axes.directions) else np.zeros(3)
+    return Projection(direction, float(direction @ axes.mean), direction)
+
+
+def most_levels(size: Sequence[int], kind: PyramidKind) -> int:
+    """Return the largest number of levels for a plane of this height and width."""
+    return steerable.max_levels(size) if kind == "steerable" else gaussian.max_levels(size)
+
+
+def split(plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientations: int) -> tuple[Band, ...]:
+    """Split a plane into its subbands, from fine to coarse; fewer levels when the plane is too small.
+
+    Parameters
+    ----------
+    plane
+        (H, W) float32.
+    kind
+        ``gaussian`` gives the plane itself and ``levels`` reductions of it.
+    levels, orientations
+        Levels besides the residuals; orientations matter to the steerable pyramid only.
+    """
+    levels = min(levels, most_levels(plane.shape, kind))
+    if kind == "steerable":
+        items = list(steerable.build_reflected(plane, levels, orientations).items())
+    elif kind == "laplacian":
+        planes = laplacian.build(plane, levels)
+        items = list(zip(_laplacian_keys(levels), planes, strict=True))
+    else:
+        items = [(BandKey("lowpass", level), each) for level, each in enumerate(gaussian.build(plane, levels))]
+    return tuple(Band(key, each, *names(key, kind, orientations)) for key, each in items)
+
+
+def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]:
+    """Return a subband's title and label."""
+    if key.kind == "highpass":
+        return "high-pass residual", "high"
+    if key.kind == "oriented":
+        angle = f"{180 * key.orientation / orientations:.3g}°"
+        return f"level {key.level}, waves along {angle}", f"{key.level} · {angle}"
+    if key.kind == "laplacian":
+        return f"level {key.level}", str(key.level)
+    return (f"level {key.level}", str(key.level)) if kind == "gaussian" else ("low-pass residual", "low")
+
+
+def amplify(
+    image: FloatImage,
+    kind: PyramidKind,
+    levels: int,
+    orientations: int,
+    gains: Mapping[BandKey, float],
+    channel: Channel = "luma",
+) -> FloatImage:
+    """Return the image with its subbands multiplied by gains.
+
+    Parameters
+    ----------
+    image
+        (H, W, C) float32.
+    kind
+        ``steerable`` or ``laplacian``.
+    levels, orientations
+        As for :func:`split`.
+    gains
+        By place; 1 where nothing is said. All 1 returns the image.
+    channel
+        ``luma`` treats all channels alike; else only the part of the colours along that channel or axis.
+
+    Returns
+    -------
+    ndarray
+        (H, W, C) float32, not clipped.
+
+    Raises
+    ------
+    ValueError
+        For a Gaussian pyramid: its levels do not add up to the image.
+    """
+    if kind == "gaussian":
+        raise ValueError("A Gaussian pyramid cannot be collapsed.")
+    if all(gain == 1 for gain in gains.values()):
+        return image
+    levels = min(levels, most_levels(image.shape, kind))
+    if channel == "luma":
+        planes = [np.ascontiguousarray(image[..., each]) for each in range(image.shape[2])]
+        changed = [_collapse_amplified(plane, kind, levels, orientations, gains) for plane in planes]
+        return np.stack(changed, axis=-1)
+    view = projection(image, channel)
+    plane = view.plane(image)
+    change = _collapse_amplified(plane, kind, levels, orientations, gains) - plane
+    return image + change[..., None] * view.back.astype(np.float32)
+
+
+def _collapse_amplified(
+    plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientations: int, gains: Mapping[BandKey, float]
+) -> NDArray[np.float32]:
+    if kind == "laplacian":
+        planes = laplacian.build(plane, levels)
+        keys = _laplacian_keys(levels)
+        bands = [each * np.float32(gains.get(key, 1)) for key, each in zip(keys, planes, strict=True)]
+        return laplacian.collapse(bands)
+    # The mirrored plane is periodic without a jump; its first quadrant is the plane.
+    transform = steerable.Transform.of(mirrored := steerable.mirror(plane), levels, orientations)
+    spectrum = transform.forward(mirrored)
+    total = transform.empty_sum()
+    for key in transform.keys:
+        if gain := gains.get(key, 1.0):
+            transform.add(total, key, transform.band(spectrum, key) * np.float32(gain))
+    height, width = plane.shape
+    quadrant: NDArray[np.float32] = transform.inverse(total)[:height, :width]
+    return quadrant
+
+
+def _laplacian_keys(levels: int) -> list[BandKey]:
+    return [*(BandKey("laplacian", level) for level in range(levels)), BandKey("lowpass", levels)]
+
+
+def spread(values: NDArray[Any]) -> float:
+    """Return the standard deviation, computed in float64."""
+    return float(np.std(values, dtype=np.float64))
