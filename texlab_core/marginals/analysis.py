@@ -112,7 +112,7 @@ def band_keys(pyramid: Pyramid, levels: int, orientations: int) -> tuple[BandKey
     """Return the places of all subbands, from fine to coarse."""
     if pyramid == "steerable":
         return steerable.band_keys(levels, orientations)
-    return (*(BandKey("laplacian", level) for level in range(levels)), BandKey("lowpass", levels))
+    return (*(BandKey("bandpass", level) for level in range(levels)), BandKey("lowpass", levels))
 
 
 def expansion(pyramid: Pyramid) -> gaussian.Expansion:
@@ -197,6 +197,6 @@ def _laplacian_bands(
     for level in range(levels):
         yield BandKey("lowpass", level), plane
         band, coarser = laplacian.build(plane, 1, border, mode)
-        yield BandKey("laplacian", level), band
+        yield BandKey("bandpass", level), band
         plane = coarser
     yield BandKey("lowpass", levels), plane

@@ -72,7 +72,7 @@ class SteerablePyramid:
 class BandKey:
     """Place of a subband in the pyramid."""
 
-    kind: Literal["highpass", "oriented", "laplacian", "lowpass"]
+    kind: Literal["highpass", "oriented", "bandpass", "lowpass"]
     level: int = 0
     orientation: int = 0
 
@@ -81,7 +81,7 @@ class BandKey:
         """Short name: ``high``, ``l0-o1``, ``l0`` (of a Laplacian pyramid) or ``low``."""
         if self.kind == "oriented":
             return f"l{self.level}-o{self.orientation}"
-        return f"l{self.level}" if self.kind == "laplacian" else self.kind.removesuffix("pass")
+        return f"l{self.level}" if self.kind == "bandpass" else self.kind.removesuffix("pass")
 
 
 def band_keys(levels: int, orientations: int) -> tuple[BandKey, ...]:
