@@ -172,7 +172,7 @@ def _notes(code: MsgCode, plan: Design) -> tuple[str, ...]:
         notes.append(f"{plan.imaginary} of the 32 bandwidths of eq. 6 as printed are imaginary and were set to 0.")
     if plan.clipped:
         notes.append(
-            "Some channels would need negative energy; the nearest energies that are none miss the code by "
+            "Some channels would need negative energy; the nearest ones without miss the code by "
             f"{100 * plan.error:.2g} %."
         )
     if code.tone.colours is not None:
