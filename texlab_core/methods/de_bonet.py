@@ -5,25 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
-
-from texlab_core.errors import InputError
 from texlab_core.inputs import exemplar_of
 from texlab_core.multiresolution.thresholds import MAX_K, ThresholdTable
 from texlab_core.params import Knob, Params
 from texlab_core.registry import Method, register
-from texlab_core.steps import Output, Step
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.inputs import Inputs
     from texlab_core.multiresolution.analysis import Analysis
-    from texlab_core.multiresolution.sampling import Sampling
     from texlab_core.run import Streams
-    from texlab_core.steps import FloatImage
-
-_LARGEST_GRID = 2**27
+    from texlab_core.steps import Output, Step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +26,7 @@ class DeBonetParams(Params):
     alpha: Annotated[
         float,
         Knob(
-            help="How different two parent structures may be and still count as the same; 0 copies",
+            help="How different two parent structures may be and still count as the same; 0 copies.",
             low=0,
             high=4,
             step=0.005,
@@ -45,7 +38,7 @@ class DeBonetParams(Params):
     beta: Annotated[
         float,
         Knob(
-            help="How much stricter fine levels are than coarse ones: T = α / k^β, k = 1 at the coarsest",
+            help="How much stricter fine levels are than coarse ones: T = α / k^β, k = 1 at the coarsest.",
             low=0,
             high=2,
             step=0.05,
@@ -56,7 +49,7 @@ class DeBonetParams(Params):
     thresholds: Annotated[
         ThresholdTable,
         Knob(
-            help="Cells of the threshold table that do not follow the law",
+            help="Cells of the threshold table that do not follow the law.",
             source="De Bonet 1997, eq. 11",
             group="Thresholds",
         ),
@@ -64,7 +57,7 @@ class DeBonetParams(Params):
     siblings: Annotated[
         Literal["parity", "literal", "mixed"],
         Knob(
-            help="Which children of a matching location are candidates",
+            help="Which children of a matching location are candidates.",
             choices={
                 "parity": "the one in the same place among its siblings; α = 0 copies exactly",
                 "literal": "all four, as printed; shuffles siblings even at α = 0",
@@ -77,7 +70,7 @@ class DeBonetParams(Params):
     literal_levels: Annotated[
         int,
         Knob(
-            help="How many of the coarsest sampled levels take all four children",
+            help="How many of the coarsest sampled levels take all four children.",
             low=1,
             high=MAX_K,
             when=("siblings", ("mixed",)),
@@ -87,7 +80,7 @@ class DeBonetParams(Params):
     coarsest: Annotated[
         Literal["shift", "tile", "iid"],
         Knob(
-            help="How the coarsest level fills a larger output",
+            help="How the coarsest level fills a larger output.",
             choices={
                 "shift": "repeated, every repetition shifted cyclically at random",
                 "tile": "repeated as it is; the tiling shows",
@@ -98,12 +91,12 @@ class DeBonetParams(Params):
         ),
     ] = "shift"
     tileable: Annotated[
-        bool, Knob(help="Collapse with periodic borders, so that the output tiles", group="Sampling")
+        bool, Knob(help="Collapse with periodic borders, so that the output tiles.", group="Sampling")
     ] = False
     coarsest_side: Annotated[
         int,
         Knob(
-            help="Smallest side of the coarsest level",
+            help="Smallest side of the coarsest level.",
             low=1,
             high=64,
             unit="px",
@@ -114,12 +107,12 @@ class DeBonetParams(Params):
     ] = 8
     fit_filters: Annotated[
         bool,
-        Knob(help="Stop the pyramid where the filters no longer fit", stage="analysis", group="Pyramid"),
+        Knob(help="Stop the pyramid where the filters no longer fit.", stage="analysis", group="Pyramid"),
     ] = True
     border: Annotated[
         Literal["reflect", "periodic", "smooth"],
         Knob(
-            help="How the pyramid sees the exemplar beyond its border",
+            help="How the pyramid sees the exemplar beyond its border.",
             stage="analysis",
             choices={
                 "reflect": "mirrored",
@@ -132,7 +125,7 @@ class DeBonetParams(Params):
     filters: Annotated[
         Literal["both", "first", "second", "laplacian"],
         Knob(
-            help="Features of a parent structure beside its Laplacian bands",
+            help="Features of a parent structure beside its Laplacian bands.",
             stage="analysis",
             choices={
                 "both": "first and second derivatives: edges and lines",
@@ -147,7 +140,7 @@ class DeBonetParams(Params):
     orientations: Annotated[
         int,
         Knob(
-            help="Directions of each derivative",
+            help="Directions of each derivative.",
             low=2,
             high=8,
             stage="analysis",
@@ -158,7 +151,7 @@ class DeBonetParams(Params):
     filter_size: Annotated[
         int,
         Knob(
-            help="Side of the derivative filters; their σ is (size - 1) / 4",
+            help="Side of the derivative filters; their σ is (size - 1) / 4.",
             low=3,
             high=9,
             unit="px",
@@ -171,7 +164,7 @@ class DeBonetParams(Params):
     channels: Annotated[
         Literal["all", "luminance"],
         Knob(
-            help="Which channels constrain; colours always move together",
+            help="Which channels constrain; colours always move together.",
             stage="analysis",
             choices={"all": "each channel has its own features", "luminance": "features of the luminance alone"},
             group="Features",
@@ -180,7 +173,7 @@ class DeBonetParams(Params):
     normalization: Annotated[
         Literal["variance", "level", "range", "sum"],
         Knob(
-            help="What squared feature differences are divided by, Z",
+            help="What squared feature differences are divided by, Z.",
             stage="analysis",
             choices={
                 "variance": "the variance of the feature at its level",
@@ -201,22 +194,16 @@ class DeBonetParams(Params):
 
 
 def check(inputs: Inputs, params: DeBonetParams, size: tuple[int, int]) -> None:
-    """Refuse outputs that are so thin that whole cells of the coarsest level would not fit in memory."""
-    from texlab_core.multiresolution.analysis import choose_depth
-    from texlab_core.multiresolution.quadtree import Grid
+    """Refuse outputs that are too thin for the pyramid."""
+    from texlab_core.multiresolution.growth import check_size
 
-    depth = choose_depth(*exemplar_of(inputs).size, params.smallest_side)
-    height, width = Grid.covering(*size, depth).shape(0)
-    if height * width > _LARGEST_GRID:
-        raise InputError(
-            f"size: the pyramid works on multiples of {2**depth} pixels, and {width} x {height} are more than "
-            f"{_LARGEST_GRID // 2**20} megapixels; choose a size that is less thin, got {size[1]} x {size[0]}."
-        )
+    check_size(exemplar_of(inputs).size, params.smallest_side, size)
 
 
 def analyze(inputs: Inputs, params: DeBonetParams) -> Generator[Step, None, Analysis]:
     """Build pyramid and features of the exemplar."""
     from texlab_core.multiresolution.analysis import analyze_steps
+    from texlab_core.multiresolution.growth import analyze_in_steps
 
     steps = analyze_steps(
         exemplar_of(inputs).pixels,
@@ -228,21 +215,16 @@ def analyze(inputs: Inputs, params: DeBonetParams) -> Generator[Step, None, Anal
         filter_size=params.filter_size,
         luminance_only=params.channels == "luminance",
     )
-    while True:
-        try:
-            done, total = next(steps)
-        except StopIteration as end:
-            analysis: Analysis = end.value
-            return analysis
-        yield Step(done, total, "features")
+    return (yield from analyze_in_steps(steps, "features"))
 
 
 def synthesize(
     model: Analysis, inputs: Inputs, params: DeBonetParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
-    """Sample level by level, growing the picture on the way (algorithm SynthesizePyramid)."""
+    """Sample level by level, growing the picture on the way (SynthesizePyramid)."""
+    from texlab_core.multiresolution.growth import grow, visible
     from texlab_core.multiresolution.report import report_steps
-    from texlab_core.multiresolution.sampling import prepare
+    from texlab_core.multiresolution.sampling import prepare, sample_steps
 
     depth = model.depth
     literal = {"parity": 0, "literal": depth, "mixed": min(depth, params.literal_levels)}
@@ -254,50 +236,20 @@ def synthesize(
         literal_levels=literal[params.siblings],
         streams=streams,
     )
-    periodic = params.tileable or model.border == "periodic"
-    image = yield from _grow(sampling, size, periodic)
+    image = yield from grow(
+        model,
+        sampling.grid,
+        sampling.sources,
+        sample_steps(sampling),
+        size=size,
+        periodic=params.tileable or model.border == "periodic",
+        after=sampling.grid.count(0),
+    )
     notes = model.notes
     if params.tileable and sampling.grid.shape(0) != size:
         side = 2**depth
         notes += (f"The output was cropped and does not tile: its sides must be multiples of {side} pixels.",)
-    return (yield from report_steps(sampling, size, _visible(image, size), notes))
-
-
-def _grow(sampling: Sampling, size: tuple[int, int], periodic: bool) -> Generator[Step, None, FloatImage]:
-    """Sample and collapse; every level that is finished becomes a frame."""
-    from texlab_core.multiresolution.collapse import coarsest, collapse_steps, enlarge
-    from texlab_core.multiresolution.sampling import sample_steps
-
-    analysis, grid = sampling.analysis, sampling.grid
-    level = grid.depth
-    missing = [grid.count(each) for each in range(level)]
-    total, done = 2 * sum(missing) + grid.count(0), 0
-    image = coarsest(analysis, grid, sampling.sources[level])
-
-    def preview() -> FloatImage:
-        return _visible(enlarge(image, level, periodic), size)
-
-    yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    for made_level, made in sample_steps(sampling):
-        if made:
-            missing[made_level] -= made
-            done += made
-        if level == 0 or missing[level - 1] > 0:
-            yield Step(done, total, f"level {made_level}", preview=preview)
-            continue
-        while level > 0 and missing[level - 1] == 0:
-            grown = image
-            for grown in collapse_steps(analysis, grid, level - 1, image, sampling.sources[level - 1], periodic):  # noqa: B007
-                yield Step(done, total, f"level {level - 1}", preview=preview)
-            level, image = level - 1, grown
-            done += grid.count(level)
-            yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    return image
-
-
-def _visible(image: FloatImage, size: tuple[int, int]) -> FloatImage:
-    # Only here values leave the legal range (section 4.2): the pyramid is collapsed at full precision.
-    return np.clip(image[: size[0], : size[1]], 0, 1)
+    return (yield from report_steps(sampling, size, visible(image, size), notes))
 
 
 register(

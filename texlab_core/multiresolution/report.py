@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.multiresolution.generators import through
+from texlab_core.multiresolution.growth import total_work
 from texlab_core.multiresolution.maps import LazyMaps, candidate_map, median_candidates, source_map_steps
 from texlab_core.stats.copying import continuous_share_steps, copied_regions_steps, largest_copy
 from texlab_core.steps import Curve, Map, Output, Step
@@ -45,8 +46,8 @@ def report_steps(
 ) -> Generator[Step, None, Output]:
     """Measure how much was copied and choose the maps."""
     grid = sampling.grid
-    total = 2 * sum(grid.count(each) for each in range(grid.depth)) + grid.count(0)
-    step = Step(total - grid.count(0), total, "maps", preview=lambda: image)
+    total = total_work(grid, grid.count(0))
+    step = Step(total - grid.count(0), total, "maps", preview=image.copy)
 
     continuity, medians = [], []
     source = np.empty((0, 0, 2), np.int32)
@@ -76,5 +77,5 @@ def report_steps(
         "largest-copy": largest_copy(region_sizes),
     }
     details = DeBonetDetails(sampling, size, region_sizes)
-    yield Step(total, total, "maps", preview=lambda: image)
+    yield Step(total, total, "maps", preview=image.copy)
     return Output(image=image, maps=maps, curves=curves, measures=measures, notes=notes, details=details)
