@@ -1,7 +1,7 @@
 """One round of match-texture: take a plane apart, match every subband, put it together, match the pixels.
 
 The plane is taken as periodic, so that the result tiles. All generators yield the number of samples that they have
-worked through since the last time.
+matched or transformed since the last time.
 
 Reference: Heeger and Bergen 1995, section 2.3; Forsyth and Ponce, algorithm 11.4.
 """
@@ -17,13 +17,21 @@ from numpy.typing import NDArray
 from texlab_core.marginals.analysis import PlaneModel, Pyramid, Target, band_keys, expansion
 from texlab_core.stats import histogram
 from texlab_core.transforms import laplacian
+from texlab_core.transforms.filters import level_size
 from texlab_core.transforms.steerable import BandKey, Transform
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Callable, Generator, Sequence
+
+    from texlab_core.tasks import Crew
+    from texlab_core.transforms.filters import Size
+    from texlab_core.transforms.steerable import Spectrum
 
 Plane = NDArray[np.float32]
 Matching = Literal["exact", "bins"]
+
+# Samples that are worth a task of their own.
+BATCH = 2**15
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +79,7 @@ def match(values: Plane, target: Target, matching: Matching, key: int) -> Genera
 
 
 def match_round(
-    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
 ) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
     """Do one round.
 
@@ -85,6 +93,8 @@ def match_round(
         How.
     tie_key
         Gives a key for each place in the order of ``plan.keys``, and one more for the pixels.
+    team
+        Works on the subbands side by side.
 
     Returns
     -------
@@ -94,54 +104,105 @@ def match_round(
         (bands,) float64: W1 / sd of every subband before it was matched.
     """
     take_apart = _steerable_round if plan.pyramid == "steerable" else _laplacian_round
-    plane, distances = yield from take_apart(plane, model, plan, tie_key)
+    plane, distances = yield from take_apart(plane, model, plan, tie_key, team)
     yield from match(plane, model.pixels, plan.matching, tie_key(len(plan.keys)))
     return plane, distances
 
 
-def measure(plane: Plane, model: PlaneModel, plan: Plan) -> Generator[int, None, NDArray[np.float64]]:
+def measure(plane: Plane, model: PlaneModel, plan: Plan, team: Crew) -> Generator[int, None, NDArray[np.float64]]:
     """Return the distance W1 / sd of every subband of a plane, (bands,) float64."""
-    distances = np.zeros(len(plan.keys))
+    distances: list[float] = []
     if plan.pyramid == "steerable":
         transform = Transform.of(plane, plan.levels, plan.orientations)
         spectrum = transform.forward(plane)
-        bands = (transform.band(spectrum, key) for key in plan.keys)
+        yield plane.size
+        tasks = (_measure_band(transform, spectrum, keys, model) for keys in _batches(plan.keys, transform.size))
+        yield from team.in_order(tasks, distances.extend)
     else:
-        bands = (band.copy() for band in _laplacian_bands(plane, plan))
-    yield plane.size
-    for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True)):
-        distances[index] = yield from match(band, model.bands[key], "exact", 0)
-    return distances
+        for key, band in zip(plan.keys, _laplacian_bands(plane, plan), strict=True):
+            distances.append((yield from match(band, model.bands[key], "exact", 0)))
+    return np.array(distances)
 
 
 def _steerable_round(
-    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
 ) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
-    distances = np.zeros(len(plan.keys))
     transform = Transform.of(plane, plan.levels, plan.orientations)
     spectrum = transform.forward(plane)
     yield plane.size
-    total = transform.empty_sum()
-    for index, key in enumerate(plan.keys):
-        band = transform.band(spectrum, key)
-        distances[index] = yield from match(band, model.bands[key], plan.matching, tie_key(index))
-        transform.add(total, key, band)
+    total, distances = transform.empty_sum(), []
+
+    def accept(batch: list[tuple[BandKey, Spectrum, float]]) -> None:
+        for key, part, distance in batch:
+            transform.add_filtered(total, key, part)
+            distances.append(distance)
+
+    places = {key: index for index, key in enumerate(plan.keys)}
+    tasks = (
+        _match_bands(transform, spectrum, keys, model, plan, lambda key: tie_key(places[key]))
+        for keys in _batches(plan.keys, transform.size)
+    )
+    yield from team.in_order(tasks, accept)
     plane = transform.inverse(total)
     yield plane.size
-    return plane, distances
+    return plane, np.array(distances)
+
+
+def _match_bands(
+    transform: Transform,
+    spectrum: Spectrum,
+    keys: Sequence[BandKey],
+    model: PlaneModel,
+    plan: Plan,
+    tie_key: Callable[[BandKey], int],
+) -> Generator[int, None, list[tuple[BandKey, Spectrum, float]]]:
+    """Take some subbands from the spectrum, match them, and filter them again."""
+    done = []
+    for key in keys:
+        band = transform.band(spectrum, key)
+        distance = yield from match(band, model.bands[key], plan.matching, tie_key(key))
+        done.append((key, transform.filtered(key, band), distance))
+    return done
+
+
+def _measure_band(
+    transform: Transform, spectrum: Spectrum, keys: Sequence[BandKey], model: PlaneModel
+) -> Generator[int, None, list[float]]:
+    distances = []
+    for key in keys:
+        band = transform.band(spectrum, key)
+        distances.append((yield from match(band, model.bands[key], "exact", 0)))
+    return distances
+
+
+def _batches(keys: Sequence[BandKey], size: Size) -> list[list[BandKey]]:
+    """Put small subbands together, so that a thread has something to do for each task it gets."""
+    batches: list[list[BandKey]] = []
+    room = 0
+    for key in keys:
+        height, width = level_size(size, key.level)
+        if room <= 0:
+            batches.append([])
+            room = BATCH
+        batches[-1].append(key)
+        room -= height * width
+    return batches
 
 
 def _laplacian_round(
-    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int]
+    plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
 ) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
-    distances = np.zeros(len(plan.keys))
+    distances: list[float] = []
     bands = _laplacian_bands(plane, plan)
     yield plane.size
-    for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True)):
-        distances[index] = yield from match(band, model.bands[key], plan.matching, tie_key(index))
+    tasks = (
+        match(band, model.bands[key], plan.matching, tie_key(index))
+        for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True))
+    )
+    yield from team.in_order(tasks, distances.append)
     collapsed = laplacian.collapse(bands, "periodic", expansion(plan.pyramid))
     yield plane.size
-    return np.ascontiguousarray(collapsed), distances
+    return np.ascontiguousarray(collapsed), np.array(distances)
 
 
 def _laplacian_bands(plane: Plane, plan: Plan) -> list[Plane]:

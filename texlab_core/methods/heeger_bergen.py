@@ -18,9 +18,8 @@ from texlab_core.marginals import analysis
 from texlab_core.marginals.rounds import Plan, match, match_round, measure
 from texlab_core.params import Knob, Params
 from texlab_core.registry import Method, register
-from texlab_core.stats.distances import w1_sorted
-from texlab_core.stats.histogram import sorted_sample
 from texlab_core.steps import Curve, Output, Step
+from texlab_core.tasks import crew
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from texlab_core.marginals.analysis import TextureModel
     from texlab_core.run import Streams
     from texlab_core.steps import FloatImage
+    from texlab_core.tasks import Crew
     from texlab_core.transforms.steerable import BandKey
 
 ReturnT = TypeVar("ReturnT")
@@ -181,11 +181,12 @@ def synthesize(
     streams: Streams,
 ) -> Generator[Step, None, Output]:
     """Make a texture from noise."""
-    run = _Run(model, inputs, params, size, streams)
-    yield from run.start()
-    for iteration in range(params.iterations):
-        yield from run.iterate(iteration)
-    image = yield from run.finish()
+    with crew() as team:
+        run = _Run(model, inputs, params, size, streams, team)
+        yield from run.start()
+        for iteration in range(params.iterations):
+            yield from run.iterate(iteration)
+        image = yield from run.finish()
     return run.output(image)
 
 
@@ -199,8 +200,10 @@ class _Run:
         params: HeegerBergenParams,
         size: tuple[int, int],
         streams: Streams,
+        team: Crew,
     ) -> None:
-        self.model, self.inputs, self.params, self.size, self.streams = model, inputs, params, size, streams
+        self.model, self.inputs, self.params, self.size = model, inputs, params, size
+        self.streams, self.team = streams, team
         levels = min(model.levels, analysis.max_levels(size, params.pyramid))
         self.plan = Plan(params.pyramid, levels, params.orientations, params.matching)
         self.keys = self.plan.keys
@@ -208,7 +211,7 @@ class _Run:
         self.image: FloatImage | None = None
         axes = len(model.planes)
         self.distances = np.zeros((params.iterations + 1, axes, len(self.keys)))
-        self.final = self.distances[-1]
+        self.final, self.pixel_distance = self.distances[-1], 0.0
         self.samples = 0
         # Start, each axis of each round, colours and measuring.
         self.total = 3 + params.iterations * max(axes, 1)
@@ -229,7 +232,7 @@ class _Run:
         stage = f"iteration {iteration + 1} of {self.params.iterations}"
         for axis, target in enumerate(self.model.planes):
             tie_key = partial(self.streams.key, "ties", iteration, axis)
-            work = match_round(self.planes[axis], target, self.plan, tie_key)
+            work = match_round(self.planes[axis], target, self.plan, tie_key, self.team)
             self.planes[axis], self.distances[iteration, axis] = yield from self._steps(work, stage)
             self.done += 1
         yield self._step(
@@ -248,6 +251,7 @@ class _Run:
         self.done += 1
         if self.model.axes is not None and self.model.planes:
             self.final = yield from self._measure(self.model.to_planes(image))
+        yield from self._measure_pixels(image)
         self.done = self.total
         yield self._step("done", {"mean-distance": _mean(self.distances[-1])})
         return image
@@ -258,8 +262,18 @@ class _Run:
         """Return the distances (axes, bands) of the planes."""
         distances = np.zeros(self.distances.shape[1:])
         for axis, (plane, target) in enumerate(zip(planes, self.model.planes, strict=True)):
-            distances[axis] = yield from self._steps(measure(plane, target, self.plan), "distances")
+            work = measure(plane, target, self.plan, self.team)
+            distances[axis] = yield from self._steps(work, "distances")
         return distances
+
+    def _measure_pixels(self, image: FloatImage) -> Generator[Step, None, None]:
+        """Take W1 / sd between the pixels of image and exemplar, averaged over the channels."""
+        shares = []
+        for channel, sample in enumerate(self.model.palette):
+            spread = float(sample.std(dtype=np.float64))
+            work = match(image[..., channel].copy(), analysis.Target(sample, spread or 1.0), "exact", 0)
+            shares.append((yield from self._steps(work, "distances")))
+        self.pixel_distance = float(np.mean(shares))
 
     def _colours(self, image: FloatImage) -> Generator[Step, None, FloatImage]:
         if self.params.palette == "transport" and self.model.axes is not None:
@@ -284,7 +298,7 @@ class _Run:
         return Output(
             image=image,
             curves=curves,
-            measures={"w1-pixels": _pixel_distance(image, self.model), "w1-bands": _mean(self.final)},
+            measures={"w1-pixels": self.pixel_distance, "w1-bands": _mean(self.final)},
             notes=self._notes(),
             details=Convergence(self.keys, self.distances, self.final),
         )
@@ -304,11 +318,13 @@ class _Run:
         """Turn work into steps, one for every ``STRIDE`` samples."""
         while True:
             try:
-                self.samples += next(work)
+                samples = next(work)
             except StopIteration as end:
                 returned: ReturnT = end.value
                 return returned
-            if self.samples >= STRIDE:
+            self.samples += samples
+            # No samples: waiting for other threads.
+            if self.samples >= STRIDE or not samples:
                 self.samples = 0
                 yield self._step(stage)
 
@@ -329,16 +345,6 @@ def _mean(values: NDArray[np.float64]) -> float:
 
 def _curve(values: Sequence[float], title: str) -> Curve:
     return Curve.of(values, title, y_label="W1 / standard deviation")
-
-
-def _pixel_distance(image: FloatImage, model: TextureModel) -> float:
-    """Return W1 / sd between the pixels of image and exemplar, averaged over the channels."""
-    shares = []
-    for channel, sample in enumerate(model.palette):
-        spread = float(sample.std(dtype=np.float64))
-        distance = w1_sorted(sorted_sample(image[..., channel]), sample)
-        shares.append(distance / spread if spread > 0 else distance)
-    return float(np.mean(shares))
 
 
 register(

@@ -204,13 +204,13 @@ class Transform:
         """Return the half spectrum of a plane, scaled so that its first entry is the mean."""
         from scipy import fft
 
-        return fft.rfft2(image, norm="forward", workers=workers())
+        return fft.rfft2(image, norm="forward", workers=_workers(self.size))
 
     def inverse(self, total: Spectrum) -> Plane:
         """Return the plane of a half spectrum."""
         from scipy import fft
 
-        return fft.irfft2(total, s=self.size, norm="forward", workers=workers())
+        return fft.irfft2(total, s=self.size, norm="forward", workers=_workers(self.size))
 
     def band(self, spectrum: Spectrum, key: BandKey) -> Plane:
         """Return one subband from the plane's spectrum."""
@@ -223,7 +223,7 @@ class Transform:
             np.multiply(spectrum[there], response[here], out=part[here])
         if key.kind == "oriented":
             _turn(part, -(self.orientations - 1))
-        return fft.irfft2(part, s=size, norm="forward", workers=workers(), overwrite_x=True)
+        return fft.irfft2(part, s=size, norm="forward", workers=_workers(self.size), overwrite_x=True)
 
     def empty_sum(self) -> Spectrum:
         """Return a spectrum to which :meth:`add` adds bands."""
@@ -237,7 +237,7 @@ class Transform:
         """Return the spectrum of one subband, filtered again."""
         from scipy import fft
 
-        part: Spectrum = fft.rfft2(plane, norm="forward", workers=workers())
+        part: Spectrum = fft.rfft2(plane, norm="forward", workers=_workers(self.size))
         np.multiply(part, self.response(key), out=part)
         if key.kind == "oriented":
             _turn(part, self.orientations - 1)
@@ -247,6 +247,11 @@ class Transform:
         """Add what :meth:`filtered` returned to the spectrum of the collapsed plane."""
         for here, there in _crop(self.size, level_size(self.size, key.level)):
             total[there] += part[here]
+
+
+def _workers(size: Size) -> int:
+    """Return the threads for one transform: for a small one, more than one is slower."""
+    return workers() if size[0] * size[1] >= 2**18 else 1
 
 
 def _crop(size: Size, crop: Size) -> tuple[tuple[Any, Any], ...]:

@@ -1,0 +1,103 @@
+"""Independent pieces of a computation on several threads, with results that do not depend on how many.
+
+A task is a generator: it yields often (every few milliseconds) how much it has worked, and returns its result.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import TimeoutError as NotYet
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypeVar
+
+from texlab_core.errors import Cancelled
+from texlab_core.threads import workers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+ResultT = TypeVar("ResultT")
+
+# While threads work, the caller is asked this often whether to go on.
+PATIENCE_S = 0.01
+
+
+class Crew:
+    """Threads that work on tasks; made by :func:`crew`."""
+
+    def __init__(self, pool: ThreadPoolExecutor | None, stop: threading.Event, ahead: int) -> None:
+        self._pool, self._stop, self._ahead = pool, stop, ahead
+
+    def in_order(
+        self, tasks: Iterable[Generator[int, None, ResultT]], accept: Callable[[ResultT], None]
+    ) -> Generator[int, None, None]:
+        """Run tasks side by side and accept their results one by one, in the order of the tasks.
+
+        Parameters
+        ----------
+        tasks
+            They must not touch what others or ``accept`` write.
+        accept
+            Called in the calling thread.
+
+        Yields
+        ------
+        int
+            Work done since the last time, as the tasks count it; 0 while waiting.
+        """
+        if self._pool is None:
+            for task in tasks:
+                accept((yield from task))
+            return
+        waiting: deque[Future[tuple[ResultT, int]]] = deque()
+        for task in tasks:
+            waiting.append(self._pool.submit(self._drive, task))
+            if len(waiting) > self._ahead:
+                yield from self._next(waiting, accept)
+        while waiting:
+            yield from self._next(waiting, accept)
+
+    def _next(
+        self, waiting: deque[Future[tuple[ResultT, int]]], accept: Callable[[ResultT], None]
+    ) -> Generator[int, None, None]:
+        future = waiting.popleft()
+        while True:
+            try:
+                result, work = future.result(PATIENCE_S)
+                break
+            except NotYet:
+                yield 0
+        accept(result)
+        yield work
+
+    def _drive(self, task: Generator[int, None, ResultT]) -> tuple[ResultT, int]:
+        work = 0
+        try:
+            while not self._stop.is_set():
+                work += next(task)
+        except StopIteration as end:
+            return end.value, work
+        finally:
+            task.close()
+        raise Cancelled
+
+
+@contextmanager
+def crew() -> Iterator[Crew]:
+    """Provide as many threads as :func:`texlab_core.threads.workers` says; with one, tasks run in the caller's.
+
+    When the block is left, tasks that are still running end at their next yield.
+    """
+    count = workers()
+    if count == 1:
+        yield Crew(None, threading.Event(), 0)
+        return
+    stop = threading.Event()
+    pool = ThreadPoolExecutor(count, thread_name_prefix="texlab-task")
+    try:
+        yield Crew(pool, stop, 2 * count)
+    finally:
+        stop.set()
+        pool.shutdown(wait=True, cancel_futures=True)
