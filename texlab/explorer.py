@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 FIRST_TEXTURE = "gallery:structured-pebbles"
-FIRST_CROP = Crop(64, 64, 128, 128)
+FIRST_CROP = Crop(16, 16, 128, 128)
 THUMBNAIL = 48
 MEMORY_MS = 2000
 
@@ -100,7 +100,8 @@ class Explorer(QObject):
 
     def _open_first(self, source: str | None, saved: Any) -> None:
         if source is not None:
-            self.opener.open(source)
+            fresh = source.startswith("gallery:")
+            self.opener.open(source, crop=FIRST_CROP if fresh else None, scale=1.0 if fresh else None)
             return
         sample = saved.get("sample") if isinstance(saved, dict) else None
         if isinstance(sample, dict):

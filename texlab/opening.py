@@ -127,7 +127,11 @@ class Opener:
             sample = dataclasses.replace(sample, scale=scale, crop=crop)
         else:
             sample = with_crop_of(sample, self._session.state.sample)
+        first = self._session.state.sample is None
         self._session.set_sample(sample)
+        if first:
+            # Nobody wants to undo to an empty window.
+            self._session.reset_history()
         if opened.image.notes:
             self._controller.said.emit(" ".join(opened.image.notes))
 

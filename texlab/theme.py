@@ -160,8 +160,8 @@ def stylesheet(theme: Theme) -> str:
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
     QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
-    QFrame#column {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
-    QFrame#column[chosen="true"] {{ border: 2px solid {theme.accent}; }}
+    QFrame#column {{ border: 2px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
+    QFrame#column[chosen="true"] {{ border-color: {theme.accent}; }}
     QFrame#column[failed="true"] {{ border-color: {theme.error}; }}
     QLabel[role="muted"] {{ color: {theme.muted}; }}
     QLabel[role="error"] {{ color: {theme.error}; }}
@@ -191,5 +191,6 @@ def configure_pyqtgraph() -> Any:
     """Import and configure pyqtgraph; returns the module."""
     import pyqtgraph as pg
 
-    pg.setConfigOptions(imageAxisOrder="row-major", antialias=False, useOpenGL=False)
+    # Without a limit to the rate of moves, a drag ends exactly where the button goes up.
+    pg.setConfigOptions(imageAxisOrder="row-major", antialias=False, useOpenGL=False, mouseRateLimit=-1)
     return pg

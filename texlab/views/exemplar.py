@@ -132,6 +132,9 @@ class ExemplarView(QFrame):
             self._box.addScaleHandle([0, 0], [1, 1])
             self._box.addScaleHandle([1, 0], [0, 1])
             self._box.addScaleHandle([0, 1], [1, 0])
+            for handle in self._box.getHandles():
+                # pyqtgraph makes these menus without a parent, and nobody would delete them.
+                handle.menu.setParent(self, handle.menu.windowFlags())
             self._box.sigRegionChanged.connect(lambda: self._dragged(final=False))
             self._box.sigRegionChangeFinished.connect(lambda: self._dragged(final=True))
             self.pane.view.addItem(self._box)

@@ -114,7 +114,8 @@ class HelpWindow(QDialog):
 def help_pages() -> list[tuple[str, str]]:
     """Return (name, title) of every page, the index first."""
     found = []
-    for entry in resource("help").iterdir():
+    folder = resource("help")
+    for entry in folder.iterdir() if folder.is_dir() else ():
         if entry.name.endswith(".md"):
             first = entry.read_text(encoding="utf-8").splitlines()[:1]
             title = first[0].lstrip("# ").strip() if first else entry.name

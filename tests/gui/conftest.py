@@ -1,0 +1,134 @@
+"""A whole window for the tests: two Heeger-Bergen columns on a small texture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from PySide6.QtCore import QPoint, Qt
+
+from tests.stub_method import stub  # noqa: F401
+from texlab import app as texlab_app
+from texlab.settings import Settings
+from texlab.theme import ThemeSource
+from texlab_core.registry import methods
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from texlab.explorer import Explorer
+
+PATIENCE_MS = 60_000
+
+
+@pytest.fixture
+def texture(tmp_path: Path) -> Path:
+    """A 40 x 48 colour texture in a file."""
+    rows, columns = np.mgrid[:40, :48]
+    waves = 127 + 60 * np.sin(rows / 2.0) + 50 * np.cos(columns / 3.0)
+    pixels = np.stack([waves, waves[::-1], np.full_like(waves, 90)], 2)
+    noise = np.random.default_rng(3).normal(0, 12, pixels.shape)
+    path = tmp_path / "waves.png"
+    Image.fromarray(np.clip(pixels + noise, 0, 255).astype(np.uint8)).save(path)
+    return path
+
+
+def hb(**changes: Any) -> tuple[str, Any]:
+    return "heeger-bergen", methods()["heeger-bergen"].params.from_json({"scales": 2, "iterations": 2, **changes})
+
+
+@pytest.fixture
+def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
+    """Return a function that opens a window and waits until its columns have finished."""
+    opened: list[Explorer] = []
+
+    def make(
+        source: str | None, columns: list[tuple[str, Any]] | None = None, *, wait: bool = True, size: int = 48
+    ) -> Explorer:
+        settings = Settings()
+        themes = ThemeSource("light")
+        window = texlab_app.build(settings, themes)
+        window.show()
+        qtbot.waitExposed(window)
+        explorer = texlab_app.complete(window, settings, themes)
+        opened.append(explorer)
+        if columns is not None:
+            explorer.settings.values.setdefault("session", {"seed": 5, "size": [size, size]})
+        explorer.start(source, columns=columns)
+        if wait:
+            wait_idle(qtbot, explorer)
+        return explorer
+
+    yield make
+    for explorer in opened:
+        window = explorer.window
+        window.close()
+        window.deleteLater()
+
+
+@pytest.fixture
+def explorer(open_window: Callable[..., Explorer], texture: Path) -> Explorer:
+    """A window with two finished Heeger-Bergen columns of 48 x 48."""
+    return open_window(str(texture), [hb(), hb(iterations=1)])
+
+
+def wait_idle(qtbot: Any, explorer: Explorer) -> None:
+    qtbot.waitUntil(lambda: explorer.idle, timeout=PATIENCE_MS)
+    # What was announced last is shown on the next turn of the event loop.
+    with qtbot.waitSignal(explorer.painted, timeout=PATIENCE_MS):
+        explorer.controller._refresh.start()
+
+
+def ids(explorer: Explorer) -> list[int]:
+    return [column.id for column in explorer.session.state.columns]
+
+
+def result_image(explorer: Explorer, column_id: int) -> Any:
+    scene = explorer.controller.column_scene(column_id)
+    assert scene is not None
+    assert scene.result is not None, scene.message
+    return scene.result.image
+
+
+def handle_point(slider: Any, share: float | None = None) -> QPoint:
+    """Return where the slider's handle is, or would be at a share of the range."""
+    from PySide6.QtWidgets import QStyle, QStyleOptionSlider
+
+    option = QStyleOptionSlider()
+    slider.initStyleOption(option)
+    if share is not None:
+        option.sliderPosition = round(slider.minimum() + share * (slider.maximum() - slider.minimum()))
+    rectangle = slider.style().subControlRect(
+        QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, slider
+    )
+    return rectangle.center()
+
+
+def drag(qtbot: Any, widget: Any, places: list[QPoint]) -> None:
+    """Press at the first place, move over the others, release at the last."""
+    button = Qt.MouseButton.LeftButton
+    qtbot.mousePress(widget, button, pos=places[0])
+    for place in places[1:]:
+        move(qtbot, widget, place)
+    qtbot.mouseRelease(widget, button, pos=places[-1])
+
+
+def move(qtbot: Any, widget: Any, place: QPoint) -> None:
+    """Move the mouse with the left button down (QTest's own moves carry no buttons)."""
+    from PySide6.QtCore import QEvent, QPointF
+    from PySide6.QtGui import QMouseEvent
+    from PySide6.QtWidgets import QApplication
+
+    left = Qt.MouseButton.LeftButton
+    event = QMouseEvent(
+        QEvent.Type.MouseMove,
+        QPointF(place),
+        QPointF(widget.mapToGlobal(place)),
+        Qt.MouseButton.NoButton,
+        left,
+        Qt.KeyboardModifier.NoModifier,
+    )
+    QApplication.sendEvent(widget, event)

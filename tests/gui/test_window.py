@@ -1,0 +1,393 @@
+"""The whole window, driven by real events."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from conftest import drag, handle_point, hb, ids, result_image, wait_idle
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QImage
+from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
+
+from texlab_core.images import as_exemplar
+from texlab_core.run import Job, run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from texlab.explorer import Explorer
+    from texlab.session import Column
+
+
+def expected(texture: Any, column: Column, size: tuple[int, int] = (48, 48), seed: int = 5) -> Any:
+    """What the core alone makes of a column."""
+    inputs = {"exemplar": as_exemplar(texture)}
+    job = Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)
+    return run(job).image
+
+
+def test_columns_show_what_the_core_makes(explorer: Explorer, texture: Path) -> None:
+    for column in explorer.session.state.columns:
+        assert np.array_equal(result_image(explorer, column.id), expected(str(texture), column))
+        picture = explorer.workspace.columns[column.id].pane.picture
+        assert picture is not None
+        assert picture.shape == (48, 48, 3)
+    first, second = ids(explorer)
+    assert not np.array_equal(result_image(explorer, first), result_image(explorer, second))
+    assert explorer.workspace.exemplar.pane.picture.shape == (40, 48, 3)
+    assert explorer.window.windowTitle() == "waves.png - TexLab"
+
+
+def test_seed_size_undo_and_redo(qtbot: Any, explorer: Explorer, texture: Path) -> None:
+    column = explorer.session.state.columns[0]
+    before = result_image(explorer, column.id)
+    box = explorer.window.seed_box
+    box.setFocus()
+    box.selectAll()
+    qtbot.keyClicks(box, "77")
+    qtbot.keyClick(box, Qt.Key.Key_Return)
+    assert explorer.session.state.seed == 77
+    wait_idle(qtbot, explorer)
+    assert np.array_equal(result_image(explorer, column.id), expected(str(texture), column, seed=77))
+    explorer.window.width_box.setFocus()
+    explorer.window.width_box.selectAll()
+    qtbot.keyClicks(explorer.window.width_box, "64")
+    qtbot.keyClick(explorer.window.width_box, Qt.Key.Key_Return)
+    wait_idle(qtbot, explorer)
+    assert result_image(explorer, column.id).shape == (48, 64, 3)
+    explorer.window.setFocus()
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    wait_idle(qtbot, explorer)
+    assert box.value() == 5
+    assert np.array_equal(result_image(explorer, column.id), before)
+    both = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Z, both)
+    assert explorer.session.state.seed == 77
+    wait_idle(qtbot, explorer)
+
+
+def test_a_drag_is_one_step_and_ends_at_full_size(qtbot: Any, explorer: Explorer, texture: Path) -> None:
+    form = explorer.window.parameters.form
+    slider = form.knobs["iterations"].findChild(QSlider)
+    start = handle_point(slider)
+    places = [start] + [QPoint(start.x() + 3 * k, start.y()) for k in range(1, 9)]
+    drag(qtbot, slider, places)
+    wait_idle(qtbot, explorer)
+    column = explorer.session.selected_column
+    assert column.params.iterations > 2
+    assert form.knobs["iterations"].findChild(QSpinBox).value() == column.params.iterations
+    assert np.array_equal(result_image(explorer, column.id), expected(str(texture), column))
+    assert explorer.controller.column_scene(column.id).draft is False
+    explorer.session.undo()
+    assert explorer.session.selected_column.params.iterations == 2
+    assert explorer.session.undo_text is None
+    wait_idle(qtbot, explorer)
+
+
+def test_stop_frees_the_column_and_the_others_go_on(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    explorer = open_window(str(texture), [hb(iterations=50), hb()], wait=False, size=400)
+    first, second = ids(explorer)
+    scene = explorer.controller.column_scene
+    qtbot.waitUntil(lambda: scene(first) is not None and scene(first).status == "running", timeout=30_000)
+    view = explorer.workspace.columns[first]
+    qtbot.mouseClick(view.stop_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: scene(first).status == "cancelled", timeout=5_000)
+    wait_idle(qtbot, explorer)
+    assert scene(second).status == "finished"
+    assert "stopped" in view.line.text()
+
+
+def test_a_failing_column_says_why_and_leaves_the_others(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path, stub: Any
+) -> None:
+    method, params = "stub", stub.params(level=3.0)
+    explorer = open_window(str(texture), [(method, params), hb()])
+    first, second = ids(explorer)
+    assert explorer.controller.column_scene(first).status == "failed"
+    assert "level: 3 is what this stub fails at." in explorer.workspace.columns[first].line.text()
+    assert explorer.controller.column_scene(second).status == "finished"
+
+
+def test_columns_are_added_copied_moved_given_methods_and_removed(
+    qtbot: Any, explorer: Explorer, stub: Any
+) -> None:
+    first, second = ids(explorer)
+    qtbot.keyClick(explorer.window, Qt.Key.Key_D, Qt.KeyboardModifier.ControlModifier)
+    assert len(ids(explorer)) == 3
+    third = ids(explorer)[1]
+    assert explorer.session.selected_id == third
+    both = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Left, both)
+    assert ids(explorer) == [third, first, second]
+    wait_idle(qtbot, explorer)
+    assert np.array_equal(result_image(explorer, third), result_image(explorer, first))
+    view = explorer.workspace.columns[second]
+    qtbot.mouseClick(view.pane.viewport(), Qt.MouseButton.LeftButton)
+    assert explorer.session.selected_id == second
+    qtbot.keyClick(explorer.window, Qt.Key.Key_W, Qt.KeyboardModifier.ControlModifier)
+    assert ids(explorer) == [third, first]
+    explorer.session.undo()
+    assert ids(explorer) == [third, first, second]
+    wait_idle(qtbot, explorer)
+    assert result_image(explorer, second).shape == (48, 48, 3)
+
+
+def test_crop_box_recomputes(qtbot: Any, explorer: Explorer, texture: Path) -> None:
+    qtbot.mouseClick(explorer.workspace.exemplar.crop_button, Qt.MouseButton.LeftButton)
+    wait_idle(qtbot, explorer)
+    crop = explorer.session.state.sample.crop
+    assert (crop.height, crop.width) == (20, 24)
+    assert explorer.controller.exemplar.size == (20, 24)
+    pane = explorer.workspace.exemplar.pane
+    centre = pane.to_widget(crop.top + 10, crop.left + 12).toPoint()
+    away = pane.to_widget(crop.top + 15, crop.left + 8).toPoint()
+    halves = [centre + (away - centre) * k / 6 for k in range(7)]
+    drag(qtbot, pane.viewport(), halves)
+    wait_idle(qtbot, explorer)
+    moved = explorer.session.state.sample.crop
+    assert (moved.height, moved.width) == (20, 24)
+    assert (moved.top, moved.left) == (crop.top + 5, crop.left - 4)
+    column = explorer.session.state.columns[0]
+    pixels = as_exemplar(str(texture), crop=moved).pixels
+    assert np.array_equal(explorer.controller.exemplar.pixels, pixels)
+    assert np.array_equal(result_image(explorer, column.id), expected(pixels, column))
+    explorer.session.undo()
+    assert explorer.session.state.sample.crop == crop
+    wait_idle(qtbot, explorer)
+
+
+def test_scale_keeps_the_crop_over_the_same_part(qtbot: Any, explorer: Explorer) -> None:
+    qtbot.mouseClick(explorer.workspace.exemplar.crop_button, Qt.MouseButton.LeftButton)
+    box = explorer.workspace.exemplar.scale_box
+    box.setFocus()
+    box.selectAll()
+    qtbot.keyClicks(box, "0.5")
+    qtbot.keyClick(box, Qt.Key.Key_Return)
+    wait_idle(qtbot, explorer)
+    crop = explorer.session.state.sample.crop
+    assert (crop.top, crop.left, crop.height, crop.width) == (5, 6, 10, 12)
+    assert explorer.controller.exemplar.size == (10, 12)
+
+
+def test_gallery_click_and_search(qtbot: Any, explorer: Explorer) -> None:
+    gallery = explorer.window.gallery
+    qtbot.waitUntil(lambda: gallery.thumbnails == 51, timeout=30_000)
+    qtbot.keyClicks(gallery.search, "zebra")
+    visible = [item for item in gallery._items.values() if not item.isHidden()]
+    assert [item.text(0) for item in visible] == ["Zebra"]
+    place = gallery.tree.visualItemRect(visible[0]).center()
+    qtbot.mouseClick(gallery.tree.viewport(), Qt.MouseButton.LeftButton, pos=place)
+    qtbot.waitUntil(lambda: explorer.session.state.sample.source.name == "gallery:oriented-zebra", timeout=10_000)
+    wait_idle(qtbot, explorer)
+    assert explorer.controller.exemplar.size == (256, 256)
+
+
+def drop(window: Any, mime: QMimeData) -> None:
+    left, keys, copy = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, Qt.DropAction.CopyAction
+    entering = QDragEnterEvent(QPoint(200, 200), copy, mime, left, keys)
+    QApplication.sendEvent(window, entering)
+    assert entering.isAccepted()
+    QApplication.sendEvent(window, QDropEvent(QPointF(200, 200), copy, mime, left, keys))
+
+
+def test_saved_result_is_restored_by_dropping_it(
+    qtbot: Any, explorer: Explorer, texture: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "result.png"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *args, **more: (str(target), ""))
+    first = explorer.session.state.columns[0]
+    image = result_image(explorer, first.id)
+    qtbot.keyClick(explorer.window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(target.exists, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    assert "Saved" in explorer.window.message_bar.label.text()
+    explorer.session.set_seed(99)
+    explorer.session.set_size((32, 32))
+    explorer.session.set_params(first.id, first.params.replace(iterations=1), "iterations")
+    explorer.opener.open("gallery:oriented-zebra")
+    qtbot.waitUntil(lambda: explorer.session.state.sample.source.name.startswith("gallery"), timeout=10_000)
+    wait_idle(qtbot, explorer)
+    mime = QMimeData()
+    mime.setUrls([QUrl.fromLocalFile(str(target))])
+    drop(explorer.window, mime)
+    qtbot.waitUntil(lambda: explorer.session.state.seed == 5, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    assert explorer.session.state.size == (48, 48)
+    assert explorer.session.selected_id == first.id
+    assert explorer.session.selected_column.params == first.params
+    assert np.array_equal(result_image(explorer, first.id), image)
+
+
+def test_paste_and_copy(qtbot: Any, explorer: Explorer) -> None:
+    picture = QImage(20, 24, QImage.Format.Format_RGB888)
+    picture.fill(Qt.GlobalColor.white)
+    for k in range(20):
+        picture.setPixelColor(k, k, Qt.GlobalColor.red)
+    QGuiApplication.clipboard().setImage(picture)
+    qtbot.keyClick(explorer.window, Qt.Key.Key_V, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: explorer.session.state.sample.source.size == (24, 20), timeout=10_000)
+    wait_idle(qtbot, explorer)
+    assert np.array_equal(explorer.controller.exemplar.pixels[7, 7], [1, 0, 0])
+    qtbot.keyClick(explorer.window, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
+    copied = QGuiApplication.clipboard().image()
+    assert (copied.width(), copied.height()) == (48, 48)
+    colour = copied.pixelColor(3, 4)
+    shown = explorer.controller.column_scene(explorer.session.selected_id).picture
+    assert [colour.red(), colour.green(), colour.blue()] == list(shown[4, 3])
+
+
+def test_what_is_no_image_gets_one_sentence_and_changes_nothing(
+    qtbot: Any, explorer: Explorer, tmp_path: Path
+) -> None:
+    bad = tmp_path / "notes.png"
+    bad.write_text("hello")
+    state = explorer.session.state
+    explorer.opener.open(str(bad))
+    bar = explorer.window.message_bar
+    qtbot.waitUntil(bar.isVisible, timeout=10_000)
+    assert "notes.png" in bar.label.text()
+    assert explorer.session.state is state
+    wait_idle(qtbot, explorer)
+
+
+def assert_same_view(one: Any, other: Any) -> None:
+    """The same centre and the same width; a pane that is a pixel wider shows a little less of the height."""
+    first, second = one.view_rect(), other.view_rect()
+    assert (first.center().x(), first.center().y()) == pytest.approx((second.center().x(), second.center().y()))
+    assert first.width() == pytest.approx(second.width())
+
+
+def test_linked_views_and_the_value_under_the_cursor(qtbot: Any, explorer: Explorer) -> None:
+    first, second = ids(explorer)
+    one, other = (explorer.workspace.columns[each].pane for each in (first, second))
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Plus)
+    assert one.view_rect().width() < 48
+    assert_same_view(one, other)
+    before = one.view_rect()
+    start = one.to_widget(24, 24).toPoint()
+    drag(qtbot, one.viewport(), [start, start + QPoint(8, 0), start + QPoint(24, 4), start + QPoint(40, 8)])
+    assert one.view_rect().left() < before.left()
+    assert_same_view(one, other)
+    qtbot.keyClick(explorer.window, Qt.Key.Key_F)
+    assert one.view_rect().contains(QPointF(1, 1))
+    qtbot.mouseMove(one.viewport(), one.to_widget(10.5, 20.5).toPoint())
+    image = result_image(explorer, first)
+    values = " ".join(f"{value:.3f}" for value in image[10, 20])
+    qtbot.waitUntil(lambda: f"20, 10   RGB {values}" in explorer.window.pixel_label.text(), timeout=5_000)
+
+
+def test_tiling_shows_four(qtbot: Any, explorer: Explorer) -> None:
+    qtbot.keyClick(explorer.window, Qt.Key.Key_T)
+    pane = explorer.workspace.columns[ids(explorer)[0]].pane
+    assert pane.extent == (96, 96)
+    assert pane.view_rect().contains(QPointF(95, 95))
+    qtbot.keyClick(explorer.window, Qt.Key.Key_T)
+    assert pane.extent == (48, 48)
+
+
+@pytest.mark.parametrize("layout", ["explore", "teach", "tune"])
+def test_layouts(qtbot: Any, explorer: Explorer, layout: str) -> None:
+    explorer.window.actions_by_name[f"layout-{layout}"].trigger()
+    assert explorer.window.docks["gallery"].isVisible() == (layout == "explore")
+    assert explorer.window.docks["parameters"].isVisible() == (layout != "teach")
+    explorer.window.actions_by_name["layout-explore"].trigger()
+
+
+def test_themes_reach_palette_panes_and_docks(qtbot: Any, explorer: Explorer) -> None:
+    explorer.window.actions_by_name["theme-dark"].trigger()
+    assert QApplication.palette().window().color().lightness() < 80
+    pane = explorer.workspace.exemplar.pane
+    assert pane.backgroundBrush().color().lightness() < 60
+    explorer.window.actions_by_name["theme-light"].trigger()
+    assert QApplication.palette().window().color().lightness() > 200
+    assert pane.backgroundBrush().color().lightness() > 200
+
+
+def test_command_palette_finds_and_runs(qtbot: Any, explorer: Explorer) -> None:
+    from texlab.views.palette import CommandPalette
+
+    qtbot.keyClick(explorer.window, Qt.Key.Key_K, Qt.KeyboardModifier.ControlModifier)
+    palette = explorer.window.findChild(CommandPalette)
+    assert palette is not None
+    qtbot.keyClicks(palette.field, "dupl")
+    qtbot.keyClick(palette.field, Qt.Key.Key_Return)
+    assert len(ids(explorer)) == 3
+    wait_idle(qtbot, explorer)
+
+
+def test_the_session_comes_back(
+    qtbot: Any, explorer: Explorer, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    explorer.session.set_seed(31)
+    explorer.session.select(ids(explorer)[1])
+    qtbot.mouseClick(explorer.workspace.exemplar.crop_button, Qt.MouseButton.LeftButton)
+    wait_idle(qtbot, explorer)
+    state = explorer.session.state
+    explorer.window.close()
+    again = open_window(None)
+    assert again.session.state.seed == 31
+    assert again.session.state.size == (48, 48)
+    assert [each.params for each in again.session.state.columns] == [each.params for each in state.columns]
+    assert again.session.state.sample.crop == state.sample.crop
+    assert again.session.selected_column.params == state.columns[1].params
+    assert again.settings.recent == [str(texture)]
+
+
+def test_broken_settings_are_left_aside(open_window: Callable[..., Explorer], texlab_home: Path) -> None:
+    folder = texlab_home / "config"
+    folder.mkdir(parents=True)
+    broken = {"session": {"columns": [{"method": "nothing"}, 3, None], "seed": -4, "size": "x"}, "recent": 7}
+    (folder / "settings.json").write_text(json.dumps(broken))
+    explorer = open_window("gallery:stochastic-sea", [hb()])
+    assert explorer.session.state.seed == 1
+    assert explorer.settings.recent == []
+
+
+def test_an_unexpected_error_is_logged_and_told(qtbot: Any, explorer: Explorer, texlab_home: Path) -> None:
+    import sys
+
+    def crash() -> None:
+        raise RuntimeError("a slot that fails")
+
+    try:
+        crash()
+    except RuntimeError as error:
+        sys.excepthook(type(error), error, error.__traceback__)
+    text = explorer.window.message_bar.label.text()
+    assert "a slot that fails" in text
+    assert "Traceback" not in text
+    log = (texlab_home / "log" / "texlab.log").read_text(encoding="utf-8")
+    assert "in crash" in log
+    assert explorer.controller.column_scene(ids(explorer)[0]).status == "finished"
+
+
+def test_twenty_thousand_signals(qtbot: Any) -> None:
+    from PySide6.QtCore import QObject, Signal
+
+    class Emitter(QObject):
+        sent = Signal(bool, object)
+
+    emitter = Emitter()
+    counts = [0, 0]
+
+    def count(flag: bool, value: object) -> None:
+        counts[flag] += value is None
+
+    emitter.sent.connect(count)
+    for number in range(20_000):
+        emitter.sent.emit(number % 2 == 0, None)
+    assert counts == [10_000, 10_000]
+
+
+def test_help_opens_the_page_of_the_method(qtbot: Any, explorer: Explorer) -> None:
+    qtbot.keyClick(explorer.window, Qt.Key.Key_F1)
+    assert explorer.help is not None
+    assert explorer.help.browser.page == "heeger-bergen"
+    assert "pyramid" in explorer.help.browser.toPlainText().lower()

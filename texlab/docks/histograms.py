@@ -1,0 +1,205 @@
+"""Histograms of the pixels and of any subband, exemplar and result over each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtWidgets import QBoxLayout, QVBoxLayout, QWidget
+
+from texlab.comparison import Comparison, compare
+from texlab.comparison_view import HistogramPlot, NumbersTable
+from texlab.dock_frame import FramedDock, Same, replace_items, shown_image
+from texlab.pyramid_controls import BandCache, PyramidControls, PyramidSettings, channel_items
+from texlab.scene import Question
+from texlab_core.stats.bands import CHANNELS, Channel, names, projection
+from texlab_core.transforms.steerable import BandKey, band_keys
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from PySide6.QtGui import QResizeEvent
+
+    from texlab.scene import Scene
+    from texlab.theme import Theme
+    from texlab_core.steps import FloatImage
+
+COLOURS: tuple[Channel, ...] = CHANNELS[1:4]
+NARROW = 760
+
+
+@dataclass(frozen=True)
+class HistogramSettings:
+    """What the controls ask for; without a band, the pixels."""
+
+    channels: tuple[Channel, ...]
+    pyramid: PyramidSettings | None = None
+    band: BandKey | None = None
+
+
+def comparisons(
+    exemplar: FloatImage, result: FloatImage | None, settings: HistogramSettings, cache: BandCache
+) -> tuple[Comparison, ...]:
+    """Compare the pixels, or one subband, of every plane that is asked for."""
+    return tuple(_compare_plane(exemplar, result, channel, settings, cache) for channel in settings.channels)
+
+
+def _compare_plane(
+    exemplar: FloatImage,
+    result: FloatImage | None,
+    channel: Channel,
+    settings: HistogramSettings,
+    cache: BandCache,
+) -> Comparison:
+    title = "gray" if exemplar.shape[2] == 1 else channel
+    if settings.pyramid is None or settings.band is None:
+        view = projection(exemplar, channel)
+        other = None if result is None else view.plane(result)
+        limits = None if channel.startswith("axis") else (0.0, 1.0)
+        return compare(title, view.plane(exemplar), other, limits=limits)
+    pyramid, key = settings.pyramid, settings.band
+    first = {band.key: band for band in cache.bands(exemplar, exemplar, channel, pyramid)}
+    second = {} if result is None else {band.key: band for band in cache.bands(result, exemplar, channel, pyramid)}
+    # A small image has fewer levels than were asked for: its residual stands for those that it lacks.
+    found = first.get(key, next(reversed(first.values())))
+    other = second[found.key].plane if found.key in second else None
+    return compare(f"{title}, {found.title}", found.plane, other)
+
+
+class HistogramsDock(FramedDock):
+    """Shows how the values of exemplar and result are distributed."""
+
+    name = "histograms"
+    title = "Histograms"
+    help = "How pixels and subbands of exemplar and result are distributed."
+    order = 20
+    empty = "Histograms appear as soon as there is an exemplar."
+
+    def build(self) -> None:
+        """Make the controls, the plots and the table."""
+        self._cache = BandCache()
+        items = [("Pixels", "pixels"), ("Subband", "band")]
+        self.source = self.add_choice("source", "Values", "Pixels, or one subband", items, self._source_changed)
+        self.channel = self.add_choice(
+            "channel", "Plane", "Which plane of the image: luma, a colour, or a principal axis", [], self.ask
+        )
+        self.pyramid = PyramidControls(self, ("steerable", "laplacian"))
+        self.band = self.add_choice("band", "Subband", "Which subband (level 0 is the finest)", [], self.ask)
+        self.band.setMinimumContentsLength(24)
+        self.log = self.add_switch(
+            "log", "Log", "Logarithmic shares: the tails can be seen", lambda _: self._redraw()
+        )
+        self.cumulated = self.add_switch(
+            "cumulative", "Cumulative", "The share of values below each value", lambda _: self._redraw()
+        )
+        self.readout = self.add_readout()
+        self.plots = [HistogramPlot(f"histograms-plot-{k}", f"Histogram {k + 1}") for k in range(3)]
+        self.plots[0].setToolTip("Exemplar: solid and filled. Result: dashed.")
+        self.table = NumbersTable("histograms-numbers")
+        plots = QWidget()
+        self._plot_line = QBoxLayout(QBoxLayout.Direction.LeftToRight, plots)
+        self._plot_line.setContentsMargins(0, 0, 0, 0)
+        for plot in self.plots:
+            plot.hovered.connect(self._hover)
+            plot.left.connect(lambda: self.readout.setText(""))
+            self._plot_line.addWidget(plot)
+        self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self.body)
+        self._halves.setContentsMargins(6, 0, 6, 6)
+        self._halves.addWidget(plots, 1)
+        beside = QVBoxLayout()
+        beside.addWidget(self.table)
+        beside.addStretch(1)
+        self._halves.addLayout(beside)
+        self.table.setMaximumHeight(self.table.sizeHint().height() * 4)
+        self._source_changed(quietly=True)
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give plots and table their colours."""
+        for each in (*self.plots, self.table):
+            each.set_theme(theme)
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the distributions of the chosen values in the exemplar and the chosen column."""
+        self.why = ""
+        if scene.exemplar is None:
+            return None
+        exemplar = scene.exemplar.pixels
+        result = shown_image(scene.selected)
+        if result is not None and result.shape[2] != exemplar.shape[2]:
+            result = None
+        self.pyramid.follow(scene)
+        self._fill_lists(exemplar.shape[2])
+        settings = self._settings()
+        cache = self._cache
+
+        def compute(should_stop: Callable[[], bool]) -> tuple[Comparison, ...]:
+            return comparisons(exemplar, result, settings, cache)
+
+        return Question((self.name, Same(exemplar), Same(result), settings), compute)
+
+    def show_answer(self, answer: tuple[Comparison, ...]) -> None:
+        """Draw the distributions and fill in the numbers."""
+        self.readout.setText("")
+        for plot, shown in zip(self.plots, (*answer, None, None, None), strict=False):
+            plot.setVisible(shown is not None)
+        self._redraw()
+        self.table.show_comparisons(answer)
+        self._turn()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Put the numbers below the plots where the dock is narrow and high enough."""
+        super().resizeEvent(event)
+        self._turn()
+
+    def _turn(self) -> None:
+        below = self.width() < NARROW and self.height() > 1.2 * self.table.sizeHint().height() + 160
+        ways = QBoxLayout.Direction
+        self._halves.setDirection(ways.TopToBottom if below else ways.LeftToRight)
+        hint = self.table.sizeHint()
+        self.table.setFixedHeight(min(hint.height(), max(50, self.body.height() - 8)))
+        self.table.setFixedWidth(
+            hint.width() if below else min(hint.width(), max(190, round(self.width() * 0.46)))
+        )
+
+    def _settings(self) -> HistogramSettings:
+        chosen = self.channel.currentData()
+        channels = COLOURS if chosen == "rgb" else (chosen,)
+        if self.source.currentData() == "pixels":
+            return HistogramSettings(channels)
+        return HistogramSettings(channels, self.pyramid.settings, self.band.currentData())
+
+    def _fill_lists(self, channels: int) -> None:
+        items = channel_items(channels)
+        if channels == 3:
+            items.insert(1, ("red, green, blue", "rgb"))
+        replace_items(self.channel, items)
+        settings = self.pyramid.settings
+        keys: list[BandKey]
+        if settings.kind == "steerable":
+            keys = list(band_keys(settings.levels, settings.orientations))
+        else:
+            keys = [BandKey("laplacian", level) for level in range(settings.levels)]
+            keys.append(BandKey("lowpass", settings.levels))
+        entries: list[tuple[str, Any]] = [
+            (names(key, settings.kind, settings.orientations)[0], key) for key in keys
+        ]
+        replace_items(self.band, entries)
+
+    def _source_changed(self, *, quietly: bool = False) -> None:
+        bands = self.source.currentData() == "band"
+        self.pyramid.kind.setVisible(bands)
+        self.pyramid.show(bands)
+        self.band.setVisible(bands)
+        if not quietly:
+            self.ask()
+
+    def _redraw(self) -> None:
+        for plot, shown in zip(self.plots, self.answer or (), strict=False):
+            plot.show_comparison(shown, log=self.log.isChecked(), cumulated=self.cumulated.isChecked())
+
+    def _hover(self, x: float, y: float) -> None:
+        plot = self.sender()
+        if self.answer and isinstance(plot, HistogramPlot):
+            place = self.plots.index(plot)
+            if place < len(self.answer):
+                self.readout.setText(plot.describe(self.answer[place], x))

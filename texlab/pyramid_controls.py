@@ -1,0 +1,108 @@
+"""The controls that choose a pyramid and a plane, and the subbands that they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from texlab.dock_frame import Same
+from texlab.recent import Recent
+from texlab_core.stats.bands import channel_names, projection, split
+
+if TYPE_CHECKING:
+    from texlab.dock_frame import FramedDock
+    from texlab.scene import Scene
+    from texlab_core.stats.bands import Band, Channel, PyramidKind
+    from texlab_core.steps import FloatImage
+
+TITLES: dict[PyramidKind, str] = {"steerable": "Steerable", "laplacian": "Laplacian", "gaussian": "Gaussian"}
+DEFAULT_SCALES, DEFAULT_ORIENTATIONS = 4, 4
+
+
+@dataclass(frozen=True)
+class PyramidSettings:
+    """What the controls say."""
+
+    kind: PyramidKind
+    levels: int
+    orientations: int
+
+
+class BandCache:
+    """The subbands that were looked at last."""
+
+    def __init__(self) -> None:
+        self._recent = Recent(8)
+
+    def bands(
+        self, image: FloatImage, exemplar: FloatImage, channel: Channel, settings: PyramidSettings
+    ) -> tuple[Band, ...]:
+        """Return the subbands of an image's plane; principal axes are those of the exemplar."""
+
+        def make() -> tuple[Band, ...]:
+            plane = projection(exemplar, channel).plane(image)
+            return split(plane, settings.kind, settings.levels, settings.orientations)
+
+        return self._recent.get((Same(image), Same(exemplar), channel, settings), make)
+
+
+def channel_items(channels: int) -> list[tuple[str, Any]]:
+    """Return the planes of an image as (text, value) for a list."""
+    names = channel_names(channels)
+    if len(names) == 1:
+        return [("gray", names[0])]
+    return [(name.replace("axis", "principal axis"), name) for name in names]
+
+
+class PyramidControls:
+    """Kind, number of scales and orientations.
+
+    Scales and orientations are those of the chosen column's parameters (where it has such) until the user says
+    otherwise; choosing another column, or changing its parameters, sets them again.
+    """
+
+    def __init__(self, dock: FramedDock, kinds: tuple[PyramidKind, ...]) -> None:
+        items = [(TITLES[kind], kind) for kind in kinds]
+        self.kind = dock.add_choice("kind", "Pyramid", "Which pyramid splits the image", items, self._changed)
+        tip = "Number of scales; follows the chosen column until it is changed here"
+        self.scales = dock.add_number("scales", "scales", tip, (1, 8), dock.ask)
+        tip = "Oriented bands per scale; follows the chosen column until it is changed here"
+        self.orientations = dock.add_number("orientations", "orientations", tip, (1, 18), dock.ask)
+        self._dock = dock
+        self._followed: tuple[object, ...] = ()
+        self._set(DEFAULT_SCALES, DEFAULT_ORIENTATIONS)
+
+    @property
+    def settings(self) -> PyramidSettings:
+        """What the controls say."""
+        return PyramidSettings(self.kind.currentData(), self.scales.value(), self.orientations.value())
+
+    def follow(self, scene: Scene) -> None:
+        """Take scales and orientations of the chosen column when it, or they, have changed."""
+        column = scene.selected
+        if column is None:
+            return
+        scales = getattr(column.params, "scales", None)
+        orientations = getattr(column.params, "orientations", None)
+        followed = (column.id, scales, orientations)
+        if followed != self._followed:
+            self._followed = followed
+            self._set(
+                scales if isinstance(scales, int) else DEFAULT_SCALES,
+                orientations if isinstance(orientations, int) else DEFAULT_ORIENTATIONS,
+            )
+
+    def show(self, visible: bool) -> None:
+        """Show the controls that matter."""
+        self.scales.setVisible(visible)
+        self.orientations.setVisible(visible and self.kind.currentData() == "steerable")
+
+    def _set(self, scales: int, orientations: int) -> None:
+        for box, value in ((self.scales, scales), (self.orientations, orientations)):
+            blocked = box.blockSignals(True)
+            box.setValue(value)
+            box.blockSignals(blocked)
+
+    def _changed(self) -> None:
+        self.show(True)
+        self._dock.ask()
