@@ -12,7 +12,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -232,6 +232,22 @@ def show(value: object) -> str:
     return str(value) if isinstance(value, int | str) else type(value).__name__
 
 
+class Places(Protocol):
+    """Room that is shared with other work: a cell runs while it holds a place."""
+
+    def acquire(self, should_stop: Callable[[], bool]) -> bool:
+        """Wait for a place; False when ``should_stop`` says so first."""
+        ...
+
+    def release(self) -> None:
+        """Give the place back."""
+        ...
+
+    def wake(self) -> None:
+        """Make everyone who waits ask ``should_stop`` again."""
+        ...
+
+
 def run_sweep(
     sweep: Sweep,
     on_cell: Callable[[Cell], None] | None = None,
@@ -240,6 +256,7 @@ def run_sweep(
     on_progress: Callable[[float], None] | None = None,
     cache: AnalysisCache | None = None,
     workers: int | None = None,
+    places: Places | None = None,
 ) -> tuple[Cell, ...]:
     """Run every cell, as many side by side as there are cores.
 
@@ -260,6 +277,8 @@ def run_sweep(
         Where analyses are kept and found; a new one when None.
     workers
         Threads; None means one for each core.
+    places
+        Where each cell takes a place while it runs; None means that there is room.
 
     Returns
     -------
@@ -271,7 +290,7 @@ def run_sweep(
     Cancelled
         When ``should_stop`` said so; every thread has ended then.
     """
-    state = _State(sweep, AnalysisCache() if cache is None else cache)
+    state = _State(sweep, AnalysisCache() if cache is None else cache, places)
     count = max(1, min(len(sweep.jobs), (os.cpu_count() or 1) if workers is None else workers))
     cells: dict[int, Cell] = {}
     with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
@@ -294,6 +313,8 @@ def run_sweep(
                         on_cell(outcome)
         finally:
             state.stop.set()
+            if places is not None:
+                places.wake()
             pool.shutdown(wait=True, cancel_futures=True)
     return tuple(cells[index] for index in sorted(cells))
 
@@ -301,9 +322,10 @@ def run_sweep(
 class _State:
     """What the threads of one sweep share."""
 
-    def __init__(self, sweep: Sweep, cache: AnalysisCache) -> None:
+    def __init__(self, sweep: Sweep, cache: AnalysisCache, places: Places | None) -> None:
         self.sweep = sweep
         self.cache = cache
+        self.places = places
         self.stop = threading.Event()
         self.finished: queue.SimpleQueue[Cell] = queue.SimpleQueue()
         self.fractions = np.zeros(len(sweep.jobs))
@@ -311,6 +333,15 @@ class _State:
         self._guard = threading.Lock()
 
     def run_cell(self, index: int, threads: int | None) -> None:
+        if self.places is None:
+            self._run_cell(index, threads)
+        elif self.places.acquire(self.stop.is_set):
+            try:
+                self._run_cell(index, threads)
+            finally:
+                self.places.release()
+
+    def _run_cell(self, index: int, threads: int | None) -> None:
         make = partial(Cell, index=index, job=self.sweep.jobs[index], values=self.sweep.values(index))
         try:
             cell = make(**self._run(index, threads))

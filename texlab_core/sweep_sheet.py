@@ -1,17 +1,20 @@
-"""The contact sheet of a sweep: every cell with what was varied and what came of it."""
+"""The contact sheet of a sweep: every cell with what was varied and what came of it, drawn and written."""
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
-from texlab_core.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
+import numpy as np
+
+from texlab_core.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.registry import find_method
 from texlab_core.sweep import show
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from texlab_core.sweep import Cell, Sweep
@@ -48,7 +51,7 @@ def sweep_sheet(
     return contact_sheet(
         tiles,
         across,
-        title=_title(sweep),
+        title=sweep_title(sweep),
         column_heads=heads[0] if is_grid else (),
         row_heads=heads[1] if is_grid else (),
         largest=largest,
@@ -63,7 +66,51 @@ def _tile(cell: Cell | None, is_grid: bool) -> Tile:
     return Tile(image, tuple(line for line in lines if line), cell.error)
 
 
-def _title(sweep: Sweep) -> tuple[str, str]:
+def write_sheet(
+    path: str | os.PathLike[str],
+    sweep: Sweep,
+    cells: Sequence[Cell],
+    *,
+    name: str = "sweep",
+    note: str = "",
+    columns: int | None = None,
+    largest: int = LARGEST_CELL,
+) -> None:
+    """Write the contact sheet as a PNG that carries the sweep, so that it can be run again.
+
+    Parameters
+    ----------
+    path
+        Ends in .png.
+    sweep, cells, columns, largest
+        As for :func:`sweep_sheet`.
+    name, note
+        Of the recipe that the sheet carries.
+
+    Raises
+    ------
+    InputError
+        When the sheet would be too large, or cannot be written.
+    """
+    from texlab_core.image_writing import write_image
+    from texlab_core.run import versions
+    from texlab_core.sweep_recipes import TEXT_KEY, SweepRecipe
+
+    across = sheet_columns(sweep) if columns is None else columns
+    check_sheet(len(sweep.jobs), across, sweep.base.size, largest)
+    sheet = sweep_sheet(sweep, cells, columns=across, largest=largest)
+    recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
+    text = json.dumps(recipe, separators=(",", ":"), allow_nan=False)
+    write_image(path, sheet.astype(np.float32) / np.float32(255), text={TEXT_KEY: text})
+
+
+def sheet_columns(sweep: Sweep) -> int:
+    """Return how many cells stand in a row: the values of the first of two knobs, or what suits a series."""
+    return len(sweep.axes[0].values) if len(sweep.axes) == 2 else series_columns(len(sweep.jobs))
+
+
+def sweep_title(sweep: Sweep) -> tuple[str, str]:
+    """Return what is varied, and what all cells share, as two lines."""
     names = [axis.name.replace("_", " ") for axis in sweep.axes]
     varied = names[0] if len(names) == 1 else f"{names[0]} across, {names[1]} down"
     base = sweep.base

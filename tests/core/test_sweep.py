@@ -254,3 +254,54 @@ def test_evidence_comes_from_the_maps():
     maps = {"source": Map(source, "source", "Source"), "count": Map(counts, "count", "Candidates")}
     output = Output(image=np.zeros((8, 8, 1), np.float32), maps=maps)
     assert evidence_of(output) == (1.0, 31.5)
+
+
+class OnePlace:
+    """One place for everybody, with a record of who held it."""
+
+    def __init__(self):
+        self.changed = threading.Condition()
+        self.holder = None
+        self.held = []
+
+    def acquire(self, should_stop):
+        with self.changed:
+            while self.holder is not None and not should_stop():
+                self.changed.wait()
+            if should_stop():
+                return False
+            self.holder = threading.get_ident()
+            self.held.append(self.holder)
+            return True
+
+    def release(self):
+        with self.changed:
+            assert self.holder == threading.get_ident()
+            self.holder = None
+            self.changed.notify_all()
+
+    def wake(self):
+        with self.changed:
+            self.changed.notify_all()
+
+
+def test_cells_take_places():
+    places = OnePlace()
+    sweep = sweep_of(base(), ["level=0:4:9"])
+    cells = run_sweep(sweep, workers=3, places=places)
+    assert len(places.held) == 9
+    assert places.holder is None
+    alone = run_sweep(sweep, workers=1)
+    for here, there in zip(cells, alone, strict=True):
+        assert here.error == there.error
+        if here.result is not None:
+            assert np.array_equal(here.result.image, there.result.image)
+
+
+def test_cancel_while_waiting_for_a_place():
+    places = OnePlace()
+    assert places.acquire(lambda: False)
+    with pytest.raises(Cancelled):
+        run_sweep(sweep_of(base(), ["level=0:2:5"]), should_stop=lambda: True, workers=2, places=places)
+    assert len(places.held) == 1
+    places.release()

@@ -59,11 +59,10 @@ def configure(parser: Parser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Check everything, run the cells, save the sheet, report."""
-    from texlab_core.contact_sheet import check_sheet, series_columns
+    from texlab_core.contact_sheet import check_sheet
     from texlab_core.errors import ParamError
-    from texlab_core.image_writing import write_image
     from texlab_core.sweep import run_sweep
-    from texlab_core.sweep_recipes import TEXT_KEY
+    from texlab_core.sweep_sheet import sheet_columns, write_sheet
 
     out = output_file(args.out)
     if out.suffix.lower() != ".png":
@@ -75,12 +74,10 @@ def execute(args: argparse.Namespace) -> int:
     if args.image is not None:
         refuse_overwriting(out, args.image)
     sweep = recipe.sweep(exemplar)
-    columns = len(sweep.axes[0].values) if len(sweep.axes) == 2 else series_columns(len(sweep.jobs))
-    check_sheet(len(sweep.jobs), columns, sweep.base.size, largest)
+    check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.size, largest)
     with _progress(f"{len(sweep.jobs)} x {sweep.base.method}") as show:
         cells = run_sweep(sweep, on_progress=show)
-    text = json.dumps(described(sweep, recipe), separators=(",", ":"), allow_nan=False)
-    write_image(out, draw(sweep, cells, columns, largest), text={TEXT_KEY: text})
+    write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
     report(sweep, cells, str(out), as_json=args.json)
     return 0
 
@@ -129,23 +126,6 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
         crop=base.exemplar.crop if args.crop is None else parse_crop(args.crop),
     )
     return dataclasses.replace(base, **changes), choice.load()
-
-
-def described(sweep: Sweep, recipe: SweepRecipe) -> dict[str, Any]:
-    """Return the recipe that the sheet carries."""
-    from texlab_core.run import versions
-    from texlab_core.sweep_recipes import SweepRecipe
-
-    return SweepRecipe.of(sweep, recipe.name, recipe.note).to_json() | {"versions": dict(versions())}
-
-
-def draw(sweep: Sweep, cells: tuple[Cell, ...], columns: int, largest: int) -> Any:
-    """Return the sheet, (H, W, 3) float32 in [0, 1]."""
-    import numpy as np
-
-    from texlab_core.sweep_sheet import sweep_sheet
-
-    return sweep_sheet(sweep, cells, columns=columns, largest=largest).astype(np.float32) / np.float32(255)
 
 
 def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) -> None:
