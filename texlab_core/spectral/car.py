@@ -27,6 +27,8 @@ OFFSETS = tuple((dy, dx) for dy in range(REACH + 1) for dx in range(-REACH if dy
 COEFFICIENTS = len(OFFSETS)
 # Relative size of the ridge: constant and periodic exemplars leave the equations without a unique solution.
 _RIDGE = 1e-10
+# Standard deviation of rounding to whole gray levels.
+_QUANTUM = 1 / np.sqrt(12)
 _WARM = 64
 # Values beyond so many standard deviations of the exemplar are limited: an unstable recursion grows without end.
 _LIMIT = 16.0
@@ -88,7 +90,9 @@ def fit(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, C
     ridge = _RIDGE * max(np.trace(covariance) / COEFFICIENTS, 1e-30)
     solved = np.linalg.solve(covariance + ridge * np.eye(COEFFICIENTS), target)
     error = products[0, 0] - 2 * solved @ target + solved @ covariance @ solved
-    return Car(solved, mean, deviation, float(np.sqrt(max(error, 0.0) / (height * width))))
+    # A strictly periodic plane leaves no error, and without noise nothing would be synthesized.
+    noise = max(float(np.sqrt(max(error, 0.0) / (height * width))), _QUANTUM if deviation > 0 else 0.0)
+    return Car(solved, mean, deviation, noise)
 
 
 def transfer(model: Car, size: tuple[int, int], rows: slice) -> NDArray[np.complex128]:
