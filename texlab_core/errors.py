@@ -21,7 +21,11 @@ class ParamError(InputError):
     """
 
     def __init__(self, field: str, allowed: str, given: object) -> None:
-        shown = repr(given)
+        try:
+            shown = repr(given)
+        except (RecursionError, ValueError):
+            # Lists nested too deep and whole numbers with too many digits have no repr.
+            shown = f"a {type(given).__name__} too large to be shown"
         if len(shown) > 60:
             shown = shown[:57] + "..."
         super().__init__(f"{field}: must be {allowed}, got {shown}.")

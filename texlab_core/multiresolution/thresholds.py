@@ -128,13 +128,13 @@ def _checked(k: object, name: object, value: object) -> tuple[Cell, float]:
     if not isinstance(name, str) or len(name) > 40 or _NAME.fullmatch(name) is None:
         raise ValueError(f"a feature is named like red/first-45 or luminance/laplacian, got {_shown(name)}")
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise ValueError(f"a threshold must be a number from 0 to {MAX_THRESHOLD:g}, got {_shown(value)}")
+        raise ValueError(f"a threshold must be a number from 0 to {MAX_THRESHOLD:.0f}, got {_shown(value)}")
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not 0 <= number <= MAX_THRESHOLD:
-        raise ValueError(f"a threshold must be a number from 0 to {MAX_THRESHOLD:g}, got {_shown(value)}")
+        raise ValueError(f"a threshold must be a number from 0 to {MAX_THRESHOLD:.0f}, got {_shown(value)}")
     return (int(k), name), number + 0.0
 
 
