@@ -5,8 +5,10 @@ A task is a generator: it yields often (every few milliseconds) how much it has 
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
+from collections.abc import Generator
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from contextlib import contextmanager
@@ -16,12 +18,29 @@ from texlab_core.errors import Cancelled
 from texlab_core.threads import workers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
 ResultT = TypeVar("ResultT")
+Task = Generator[int, None, ResultT]
 
 # While threads work, the caller is asked this often whether to go on.
 PATIENCE_S = 0.01
+
+
+def finish(task: Task[ResultT]) -> ResultT:
+    """Run a task to its end, here and at once."""
+    while True:
+        try:
+            next(task)
+        except StopIteration as end:
+            result: ResultT = end.value
+            return result
+
+
+def row_blocks(shape: Sequence[int], samples: int = 2**19) -> list[slice]:
+    """Cut an array into slices of rows with at most ``samples`` entries each (but at least one row)."""
+    rows = max(1, samples // max(1, math.prod(shape[1:])))
+    return [slice(start, min(start + rows, shape[0])) for start in range(0, shape[0], rows)]
 
 
 class Crew:
@@ -31,7 +50,7 @@ class Crew:
         self._pool, self._stop, self._ahead = pool, stop, ahead
 
     def in_order(
-        self, tasks: Iterable[Generator[int, None, ResultT]], accept: Callable[[ResultT], None]
+        self, tasks: Iterable[Task[ResultT]], accept: Callable[[ResultT], Iterable[int]]
     ) -> Generator[int, None, None]:
         """Run tasks side by side and accept their results one by one, in the order of the tasks.
 
@@ -40,7 +59,7 @@ class Crew:
         tasks
             They must not touch what others or ``accept`` write.
         accept
-            Called in the calling thread.
+            Called in the calling thread; returns how much it works, in pieces (a generator, or an empty tuple).
 
         Yields
         ------
@@ -49,7 +68,7 @@ class Crew:
         """
         if self._pool is None:
             for task in tasks:
-                accept((yield from task))
+                yield from accept((yield from task))
             return
         waiting: deque[Future[tuple[ResultT, int]]] = deque()
         for task in tasks:
@@ -60,7 +79,7 @@ class Crew:
             yield from self._next(waiting, accept)
 
     def _next(
-        self, waiting: deque[Future[tuple[ResultT, int]]], accept: Callable[[ResultT], None]
+        self, waiting: deque[Future[tuple[ResultT, int]]], accept: Callable[[ResultT], Iterable[int]]
     ) -> Generator[int, None, None]:
         future = waiting.popleft()
         while True:
@@ -69,10 +88,10 @@ class Crew:
                 break
             except NotYet:
                 yield 0
-        accept(result)
         yield work
+        yield from accept(result)
 
-    def _drive(self, task: Generator[int, None, ResultT]) -> tuple[ResultT, int]:
+    def _drive(self, task: Task[ResultT]) -> tuple[ResultT, int]:
         work = 0
         try:
             while not self._stop.is_set():

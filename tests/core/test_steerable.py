@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
+from texlab_core.tasks import finish
 from texlab_core.threads import use_workers
 from texlab_core.transforms import filters, steerable
 
@@ -177,14 +179,19 @@ def test_what_does_not_fit_is_refused(shape, dtype, levels, orientations):
         steerable.build(np.zeros(shape, dtype), levels, orientations)
 
 
+def made_of(count, value):
+    yield count
+    return np.full(count, float(value))
+
+
 def test_filters_are_read_only_and_the_cache_is_bounded():
-    mask = filters.highpass((16, 16), np.dtype(np.float32))
-    assert mask is filters.highpass((16, 16), np.dtype(np.float32))
+    mask = finish(filters.highpass((16, 16), np.dtype(np.float32)))
+    assert mask is finish(filters.highpass((16, 16), np.dtype(np.float32)))
     assert not mask.flags.writeable
     cache = filters.ArrayCache(1000)
-    made = [cache.get((number,), lambda: np.zeros(50)) for number in range(5)]
+    made = [finish(cache.get((number,), partial(made_of, 50, 0))) for number in range(5)]
     assert cache.nbytes == 800
-    assert cache.get((4,), lambda: np.ones(50)) is made[4]
-    assert cache.get((0,), lambda: np.ones(50))[0] == 1
-    cache.get(("huge",), lambda: np.zeros(500))
+    assert finish(cache.get((4,), partial(made_of, 50, 1))) is made[4]
+    assert finish(cache.get((0,), partial(made_of, 50, 1)))[0] == 1
+    finish(cache.get(("huge",), partial(made_of, 500, 0)))
     assert cache.nbytes == 4000

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from texlab_core.marginals.analysis import PlaneModel, Pyramid, Target, band_keys, expansion
 from texlab_core.stats import histogram
-from texlab_core.transforms import laplacian
+from texlab_core.transforms import fourier, laplacian
 from texlab_core.transforms.filters import level_size
 from texlab_core.transforms.steerable import BandKey, Transform
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sequence
+    from collections.abc import Callable, Sequence
 
-    from texlab_core.tasks import Crew
+    from texlab_core.tasks import Crew, Task
     from texlab_core.transforms.filters import Size
     from texlab_core.transforms.steerable import Spectrum
 
@@ -49,7 +49,7 @@ class Plan:
         return band_keys(self.pyramid, self.levels, self.orientations)
 
 
-def match(values: Plane, target: Target, matching: Matching, key: int) -> Generator[int, None, float]:
+def match(values: Plane, target: Target, matching: Matching, key: int) -> Task[float]:
     """Match an array in place; return its W1 distance before, divided by the target's spread.
 
     Parameters
@@ -64,23 +64,15 @@ def match(values: Plane, target: Target, matching: Matching, key: int) -> Genera
         For the random order of equal values.
     """
     ranked = values if matching == "exact" else values.copy()
-    pieces = histogram.match_ranks_in_place(ranked, target.sample, key)
-    while True:
-        try:
-            next(pieces)
-        except StopIteration as end:
-            distance: float = end.value
-            break
-        yield values.size // 8
+    distance = yield from histogram.match_ranks_in_place(ranked, target.sample, key)
     if matching == "bins":
-        values[...] = histogram.match_tables(values, histogram.tables(target.sample))
-    yield values.size
+        yield from histogram.match_tables_in_place(values, histogram.tables(target.sample))
     return distance / target.spread if target.spread > 0 else 0.0
 
 
 def match_round(
     plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
-) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+) -> Task[tuple[Plane, NDArray[np.float64]]]:
     """Do one round.
 
     Parameters
@@ -109,15 +101,19 @@ def match_round(
     return plane, distances
 
 
-def measure(plane: Plane, model: PlaneModel, plan: Plan, team: Crew) -> Generator[int, None, NDArray[np.float64]]:
+def measure(plane: Plane, model: PlaneModel, plan: Plan, team: Crew) -> Task[NDArray[np.float64]]:
     """Return the distance W1 / sd of every subband of a plane, (bands,) float64."""
     distances: list[float] = []
     if plan.pyramid == "steerable":
         transform = Transform.of(plane, plan.levels, plan.orientations)
-        spectrum = transform.forward(plane)
-        yield plane.size
+        spectrum = yield from fourier.rfft2(plane)
         tasks = (_measure_band(transform, spectrum, keys, model) for keys in _batches(plan.keys, transform.size))
-        yield from team.in_order(tasks, distances.extend)
+
+        def accept(batch: list[float]) -> tuple[()]:
+            distances.extend(batch)
+            return ()
+
+        yield from team.in_order(tasks, accept)
     else:
         for key, band in zip(plan.keys, _laplacian_bands(plane, plan), strict=True):
             distances.append((yield from match(band, model.bands[key], "exact", 0)))
@@ -126,16 +122,15 @@ def measure(plane: Plane, model: PlaneModel, plan: Plan, team: Crew) -> Generato
 
 def _steerable_round(
     plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
-) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+) -> Task[tuple[Plane, NDArray[np.float64]]]:
     transform = Transform.of(plane, plan.levels, plan.orientations)
-    spectrum = transform.forward(plane)
-    yield plane.size
+    spectrum = yield from fourier.rfft2(plane)
     total, distances = transform.empty_sum(), []
 
-    def accept(batch: list[tuple[BandKey, Spectrum, float]]) -> None:
+    def accept(batch: list[tuple[BandKey, Spectrum, float]]) -> Task[None]:
         for key, part, distance in batch:
-            transform.add_filtered(total, key, part)
             distances.append(distance)
+            yield from transform.add_task(total, key, part)
 
     places = {key: index for index, key in enumerate(plan.keys)}
     tasks = (
@@ -143,8 +138,7 @@ def _steerable_round(
         for keys in _batches(plan.keys, transform.size)
     )
     yield from team.in_order(tasks, accept)
-    plane = transform.inverse(total)
-    yield plane.size
+    plane = yield from fourier.irfft2(total, transform.size)
     return plane, np.array(distances)
 
 
@@ -155,22 +149,23 @@ def _match_bands(
     model: PlaneModel,
     plan: Plan,
     tie_key: Callable[[BandKey], int],
-) -> Generator[int, None, list[tuple[BandKey, Spectrum, float]]]:
+) -> Task[list[tuple[BandKey, Spectrum, float]]]:
     """Take some subbands from the spectrum, match them, and filter them again."""
     done = []
     for key in keys:
-        band = transform.band(spectrum, key)
+        band = yield from transform.band_task(spectrum, key)
         distance = yield from match(band, model.bands[key], plan.matching, tie_key(key))
-        done.append((key, transform.filtered(key, band), distance))
+        part = yield from transform.filtered_task(key, band)
+        done.append((key, part, distance))
     return done
 
 
 def _measure_band(
     transform: Transform, spectrum: Spectrum, keys: Sequence[BandKey], model: PlaneModel
-) -> Generator[int, None, list[float]]:
+) -> Task[list[float]]:
     distances = []
     for key in keys:
-        band = transform.band(spectrum, key)
+        band = yield from transform.band_task(spectrum, key)
         distances.append((yield from match(band, model.bands[key], "exact", 0)))
     return distances
 
@@ -191,7 +186,7 @@ def _batches(keys: Sequence[BandKey], size: Size) -> list[list[BandKey]]:
 
 def _laplacian_round(
     plane: Plane, model: PlaneModel, plan: Plan, tie_key: Callable[[int], int], team: Crew
-) -> Generator[int, None, tuple[Plane, NDArray[np.float64]]]:
+) -> Task[tuple[Plane, NDArray[np.float64]]]:
     distances: list[float] = []
     bands = _laplacian_bands(plane, plan)
     yield plane.size
@@ -199,7 +194,12 @@ def _laplacian_round(
         match(band, model.bands[key], plan.matching, tie_key(index))
         for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True))
     )
-    yield from team.in_order(tasks, distances.append)
+
+    def accept(distance: float) -> tuple[()]:
+        distances.append(distance)
+        return ()
+
+    yield from team.in_order(tasks, accept)
     collapsed = laplacian.collapse(bands, "periodic", expansion(plan.pyramid))
     yield plane.size
     return np.ascontiguousarray(collapsed), np.array(distances)

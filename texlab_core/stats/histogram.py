@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from texlab_core.tasks import finish, row_blocks
+
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from texlab_core.tasks import Task
 
 Sample = NDArray[np.float32]
 
@@ -65,15 +67,11 @@ def match_ranks(values: NDArray[Any], target: Sample, key: int = 0) -> Sample:
         float32, of the same shape.
     """
     matched = np.array(values, np.float32, order="C")
-    steps = match_ranks_in_place(matched, target, key)
-    while True:
-        try:
-            next(steps)
-        except StopIteration:
-            return matched
+    finish(match_ranks_in_place(matched, target, key))
+    return matched
 
 
-def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Generator[None, None, float]:
+def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Task[float]:
     """Do :func:`match_ranks` in place, in pieces of at most about 5 ms.
 
     Parameters
@@ -85,8 +83,8 @@ def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Generator[
 
     Yields
     ------
-    None
-        Between two pieces.
+    int
+        Samples worked through since the last time, six passes making one.
 
     Returns
     -------
@@ -95,11 +93,10 @@ def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Generator[
     """
     from texlab_core.kernels import ranks
 
-    if values.dtype != np.float32 or not values.flags.c_contiguous:
-        raise ValueError("Matching in place needs contiguous float32 values.")
-    flat = values.reshape(-1)
+    flat = _flat(values)
     many, seed = flat.size, np.uint64(key)
     if many <= ranks.CHUNK:
+        yield many
         return float(ranks.match(flat, target, seed)) / many
     pieces = [(start, min(start + ranks.CHUNK, many)) for start in range(0, many, ranks.CHUNK)]
     bits = flat.view(np.uint32)
@@ -107,23 +104,23 @@ def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Generator[
     first, second = np.empty(many, np.uint64), np.empty(many, np.uint64)
     for start, stop in pieces:
         ranks.count(bits, start, stop, counts)
-        yield
+        yield (stop - start) // 6
     ranks.starts(counts)
     for start, stop in pieces:
         ranks.scatter_first(bits, start, stop, counts, first)
-        yield
+        yield (stop - start) // 6
     for number, source, items in ((1, first, second), (2, second, first)):
         for start, stop in pieces:
             ranks.scatter_next(source, start, stop, number, counts, items)
-            yield
+            yield (stop - start) // 6
     run = 0
     for start, stop in pieces:
         run = ranks.shuffle_ties(first, start, stop, run, seed)
-        yield
+        yield (stop - start) // 6
     moved = 0.0
     for start, stop in pieces:
         moved += ranks.assign(first, start, stop, target, flat)
-        yield
+        yield (stop - start) // 6
     return moved / many
 
 
@@ -147,16 +144,15 @@ class Tables:
     inverse: NDArray[np.float64]
 
 
-def tables(values: NDArray[Any], bins: int = PAPER_BINS) -> Tables:
-    """Make the cdf of a sample from its histogram, and the inverse of the cdf.
+def tables(target: Sample, bins: int = PAPER_BINS) -> Tables:
+    """Make the cdf of a sorted sample, as from a histogram of its range, and the inverse of the cdf.
 
     Reference: Heeger and Bergen 1995, section 2.2.
     """
-    flat = np.asarray(values, np.float64).reshape(-1)
-    low, high = float(flat.min()), float(flat.max())
+    low, high = float(target[0]), float(target[-1])
     edges = np.linspace(low, high, bins + 1)
-    cdf = np.concatenate([[0.0], np.cumsum(np.bincount(_bin_places(flat, low, high, bins)[0], minlength=bins))])
-    cdf /= flat.size
+    below = np.searchsorted(target, edges[1:-1].astype(np.float32), side="left")
+    cdf = np.concatenate([[0.0], below, [target.size]]) / target.size
     return Tables(low, high, cdf, np.interp(np.linspace(0, 1, bins + 1), cdf, edges))
 
 
@@ -178,22 +174,56 @@ def match_tables(values: NDArray[Any], target: Tables) -> Sample:
     ndarray
         float32, of the same shape.
     """
+    matched = np.array(values, np.float32, order="C")
+    finish(match_tables_in_place(matched, target))
+    return matched
+
+
+def match_tables_in_place(values: Sample, target: Tables) -> Task[None]:
+    """Do :func:`match_tables` in place, in pieces of at most about 5 ms.
+
+    Parameters
+    ----------
+    values
+        float32, C-contiguous, any shape; overwritten.
+    target
+        As in :func:`match_tables`.
+
+    Yields
+    ------
+    int
+        Samples worked through since the last time, the two passes making one.
+    """
+    flat = _flat(values)
     bins = target.cdf.size - 1
-    flat = np.asarray(values, np.float32).reshape(-1)
-    low, high = float(flat.min()), float(flat.max())
-    place, within = _bin_places(flat, low, high, bins)
-    counts = np.bincount(place, minlength=bins)
-    below = np.concatenate([[0.0], np.cumsum(counts)[:-1]]) / flat.size * bins
-    share = (below.astype(np.float32))[place] + (counts / flat.size * bins).astype(np.float32)[place] * within
-    index = np.minimum(share.astype(np.intp), bins - 1)
-    start = target.inverse[:-1].astype(np.float32)
-    rise = np.diff(target.inverse).astype(np.float32)
-    matched: Sample = (start[index] + rise[index] * (share - index)).astype(np.float32)
-    return matched.reshape(np.shape(values))
+    low, high = flat.min(), flat.max()
+    scale = np.float32(bins) / (high - low) if high > low else np.float32(0)
+    counts = np.zeros(bins)
+    for block in row_blocks(flat.shape, 2**17):
+        counts += np.bincount(_bin_places(flat[block], low, scale, bins)[0], minlength=bins)
+        yield (block.stop - block.start) // 2
+    # Shares are counted in bins of the inverse table.
+    rise = (counts * (bins / flat.size)).astype(np.float32)
+    start = (np.concatenate([[0.0], np.cumsum(counts)[:-1]]) * (bins / flat.size)).astype(np.float32)
+    wanted = target.inverse[:-1].astype(np.float32)
+    slope = np.diff(target.inverse).astype(np.float32)
+    for block in row_blocks(flat.shape, 2**17):
+        place, within = _bin_places(flat[block], low, scale, bins)
+        share = start[place] + rise[place] * within
+        index = np.minimum(share.astype(np.intp), bins - 1)
+        flat[block] = wanted[index] + slope[index] * (share - index.astype(np.float32))
+        yield (block.stop - block.start) // 2
 
 
-def _bin_places(flat: NDArray[Any], low: float, high: float, bins: int) -> tuple[NDArray[np.intp], NDArray[Any]]:
+def _bin_places(flat: Sample, low: np.float32, scale: np.float32, bins: int) -> tuple[NDArray[np.intp], Sample]:
     """Return each value's bin, and where in the bin it lies, from 0 to 1."""
-    scaled = (flat - flat.dtype.type(low)) * flat.dtype.type(bins / (high - low) if high > low else 0)
+    scaled = (flat - low) * scale
     place = np.minimum(scaled.astype(np.intp), bins - 1)
-    return place, scaled - place
+    return place, scaled - place.astype(np.float32)
+
+
+def _flat(values: Sample) -> Sample:
+    """Return a flat view of an array that is to be overwritten."""
+    if values.dtype != np.float32 or not values.flags.c_contiguous:
+        raise ValueError("Matching in place needs contiguous float32 values.")
+    return values.reshape(-1)

@@ -1,4 +1,4 @@
-"""Fourier tools for images that are taken as periodic though they are not."""
+"""Fourier transforms of planes, in pieces when they are large, and the periodic part of an image."""
 
 from __future__ import annotations
 
@@ -6,10 +6,61 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from texlab_core.tasks import row_blocks
 from texlab_core.threads import workers
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
+
+    from texlab_core.tasks import Task
+
+# A transform of so many samples takes about 10 ms; a larger one is cut into rows, then columns.
+LARGE = 2**21
+# Below this, more than one thread is slower.
+SMALL = 2**18
+
+
+def rfft2(plane: NDArray[Any]) -> Task[NDArray[Any]]:
+    """Return the half spectrum (H, W // 2 + 1) of a plane, scaled so that its first entry is the mean."""
+    from scipy import fft
+
+    if plane.size <= LARGE:
+        yield plane.size
+        return fft.rfft2(plane, norm="forward", workers=_threads(plane.size))
+    height, width = plane.shape
+    spectrum = np.empty((height, width // 2 + 1), np.result_type(plane.dtype, np.complex64))
+    for rows in row_blocks(plane.shape):
+        spectrum[rows] = fft.rfft(plane[rows], axis=1, norm="forward", workers=workers())
+        yield plane[rows].size
+    for columns in row_blocks(spectrum.shape[::-1]):
+        spectrum[:, columns] = fft.fft(spectrum[:, columns], axis=0, norm="forward", workers=workers())
+        yield spectrum[:, columns].size
+    return spectrum
+
+
+def irfft2(spectrum: NDArray[Any], size: Sequence[int]) -> Task[NDArray[Any]]:
+    """Return the plane (H, W) of a half spectrum, which is overwritten."""
+    from scipy import fft
+
+    height, width = size
+    samples = height * width
+    if samples <= LARGE:
+        yield samples
+        return fft.irfft2(spectrum, s=(height, width), norm="forward", workers=_threads(samples), overwrite_x=True)
+    for columns in row_blocks(spectrum.shape[::-1]):
+        spectrum[:, columns] = fft.ifft(spectrum[:, columns], axis=0, norm="forward", workers=workers())
+        yield spectrum[:, columns].size
+    plane = np.empty((height, width), spectrum.real.dtype)
+    for rows in row_blocks(plane.shape):
+        plane[rows] = fft.irfft(spectrum[rows], n=width, axis=1, norm="forward", workers=workers())
+        yield plane[rows].size
+    return plane
+
+
+def _threads(samples: int) -> int:
+    return workers() if samples >= SMALL else 1
 
 
 def periodic_component(image: NDArray[Any]) -> NDArray[Any]:

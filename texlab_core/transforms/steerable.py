@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.threads import workers
-from texlab_core.transforms import filters
+from texlab_core.tasks import finish, row_blocks
+from texlab_core.transforms import filters, fourier
 from texlab_core.transforms.filters import Size, level_size, spectrum_size
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from texlab_core.tasks import Task
 
 Plane = NDArray[Any]
 Spectrum = NDArray[Any]
@@ -189,41 +191,42 @@ class Transform:
         """The places of all subbands, from fine to coarse."""
         return band_keys(self.levels, self.orientations)
 
-    def response(self, key: BandKey) -> Plane:
+    def response(self, key: BandKey) -> Task[Plane]:
         """Return the real response of a band on its cropped half spectrum.
 
         The residual below another number of levels may be asked for as well.
         """
         if key.kind == "highpass":
-            return filters.highpass(self.size, self.dtype)
+            return (yield from filters.highpass(self.size, self.dtype))
         if key.kind == "lowpass":
-            return filters.lowpass(self.size, key.level, self.dtype)
-        return filters.oriented(self.size, key.level, self.orientations, key.orientation, self.dtype)
+            return (yield from filters.lowpass(self.size, key.level, self.dtype))
+        responses = yield from filters.oriented(self.size, key.level, self.orientations, self.dtype)
+        response: Plane = responses[key.orientation]
+        return response
 
     def forward(self, image: Plane) -> Spectrum:
         """Return the half spectrum of a plane, scaled so that its first entry is the mean."""
-        from scipy import fft
-
-        return fft.rfft2(image, norm="forward", workers=_workers(self.size))
+        return finish(fourier.rfft2(image))
 
     def inverse(self, total: Spectrum) -> Plane:
-        """Return the plane of a half spectrum."""
-        from scipy import fft
-
-        return fft.irfft2(total, s=self.size, norm="forward", workers=_workers(self.size))
+        """Return the plane of a half spectrum, which is overwritten."""
+        return finish(fourier.irfft2(total, self.size))
 
     def band(self, spectrum: Spectrum, key: BandKey) -> Plane:
         """Return one subband from the plane's spectrum."""
-        from scipy import fft
+        return finish(self.band_task(spectrum, key))
 
-        response = self.response(key)
+    def band_task(self, spectrum: Spectrum, key: BandKey) -> Task[Plane]:
+        """Do :meth:`band` in pieces."""
+        response = yield from self.response(key)
         size = level_size(self.size, key.level)
         part = np.empty(spectrum_size(size), spectrum.dtype)
         for here, there in _crop(self.size, size):
             np.multiply(spectrum[there], response[here], out=part[here])
+            yield part[here].size // 8
         if key.kind == "oriented":
             _turn(part, -(self.orientations - 1))
-        return fft.irfft2(part, s=size, norm="forward", workers=_workers(self.size), overwrite_x=True)
+        return (yield from fourier.irfft2(part, size))
 
     def empty_sum(self) -> Spectrum:
         """Return a spectrum to which :meth:`add` adds bands."""
@@ -231,38 +234,35 @@ class Transform:
 
     def add(self, total: Spectrum, key: BandKey, plane: Plane) -> None:
         """Filter one subband again and add it to the spectrum of the collapsed plane."""
-        self.add_filtered(total, key, self.filtered(key, plane))
+        finish(self.add_task(total, key, finish(self.filtered_task(key, plane))))
 
-    def filtered(self, key: BandKey, plane: Plane) -> Spectrum:
-        """Return the spectrum of one subband, filtered again."""
-        from scipy import fft
-
-        part: Spectrum = fft.rfft2(plane, norm="forward", workers=_workers(self.size))
-        np.multiply(part, self.response(key), out=part)
+    def filtered_task(self, key: BandKey, plane: Plane) -> Task[Spectrum]:
+        """Return the spectrum of one subband, filtered again, in pieces."""
+        response = yield from self.response(key)
+        part = yield from fourier.rfft2(plane)
+        for rows in row_blocks(part.shape):
+            np.multiply(part[rows], response[rows], out=part[rows])
+            yield part[rows].size // 8
         if key.kind == "oriented":
             _turn(part, self.orientations - 1)
         return part
 
-    def add_filtered(self, total: Spectrum, key: BandKey, part: Spectrum) -> None:
-        """Add what :meth:`filtered` returned to the spectrum of the collapsed plane."""
+    def add_task(self, total: Spectrum, key: BandKey, part: Spectrum) -> Task[None]:
+        """Add what :meth:`filtered_task` returned to the spectrum of the collapsed plane."""
         for here, there in _crop(self.size, level_size(self.size, key.level)):
             total[there] += part[here]
+            yield part[here].size // 8
 
 
-def _workers(size: Size) -> int:
-    """Return the threads for one transform: for a small one, more than one is slower."""
-    return workers() if size[0] * size[1] >= 2**18 else 1
-
-
-def _crop(size: Size, crop: Size) -> tuple[tuple[Any, Any], ...]:
-    """Return pairs of slices: the crop's rows of either sign, and where the whole spectrum has them."""
-    above, below = (crop[0] + 1) // 2, crop[0] // 2
-    columns = slice(0, crop[1] // 2 + 1)
-    first = (slice(0, above), columns)
-    pairs = [(first, first)]
-    if below:
-        pairs.append(((slice(above, above + below), columns), (slice(size[0] - below, size[0]), columns)))
-    return tuple(pairs)
+def _crop(size: Size, crop: Size) -> list[tuple[Any, Any]]:
+    """Return pairs of blocks: the crop's rows of either sign, and where the whole spectrum has them."""
+    above, columns = (crop[0] + 1) // 2, slice(0, crop[1] // 2 + 1)
+    pairs = []
+    for start, stop, shift in ((0, above, 0), (above, crop[0], size[0] - crop[0])):
+        for rows in row_blocks((stop - start, columns.stop)):
+            here = slice(start + rows.start, start + rows.stop)
+            pairs.append(((here, columns), (slice(here.start + shift, here.stop + shift), columns)))
+    return pairs
 
 
 def _turn(part: Spectrum, quarters: int) -> None:
