@@ -97,7 +97,8 @@ def contact_sheet(
     column_heads, row_heads
         Above each column, left of each row.
     largest
-        Longest side at which a picture is shown; larger ones are scaled down by area averaging.
+        Longest side at which a picture is shown; when one is larger, all are scaled down together, by area
+        averaging.
 
     Returns
     -------
@@ -106,7 +107,9 @@ def contact_sheet(
     """
     from PIL import Image, ImageDraw
 
-    pictures = [None if tile.image is None else _picture(tile.image, largest) for tile in tiles]
+    sides = [max(tile.image.shape[:2]) for tile in tiles if tile.image is not None]
+    scale = min(1.0, largest / max(sides, default=1))
+    pictures = [None if tile.image is None else _picture(tile.image, scale) for tile in tiles]
     plan = _plan(tiles, pictures, columns, title, column_heads, row_heads)
     sheet = Image.new("RGB", plan.size, _PAPER)
     draw = ImageDraw.Draw(sheet)
@@ -119,16 +122,16 @@ def contact_sheet(
         x, y = plan.place(column)
         pen.write((x, y - plan.head_height), pen.wrap(text, plan.width))
     for row, text in enumerate(row_heads):
-        y = plan.place(row * columns)[1]
-        pen.write((_GAP, y + (plan.height - pen.line) // 2), [text])
+        pen.write((_GAP, plan.tops[row] + (plan.heights[row] - pen.line) // 2), [text])
     for index, (tile, picture) in enumerate(zip(tiles, pictures, strict=True)):
         x, y = plan.place(index)
-        if picture is None:
-            draw.rectangle((x, y, x + plan.width - 1, y + plan.height - 1), fill=_EMPTY)
-            pen.write((x + 4, y + 4), pen.fit(tile.message, plan.width - 8, plan.height - 8))
-        else:
+        height = plan.heights[index // columns]
+        if picture is None and tile.message:
+            draw.rectangle((x, y, x + plan.width - 1, y + height - 1), fill=_EMPTY)
+            pen.write((x + 4, y + 4), pen.fit(tile.message, plan.width - 8, height - 8))
+        elif picture is not None:
             sheet.paste(Image.fromarray(picture), (x, y))
-        below = y + plan.height + 4
+        below = y + height + 4
         for number, text in enumerate(tile.caption):
             below = pen.write((x, below), pen.wrap(text, plan.width), _PALE_INK if number else _INK)
     return np.asarray(sheet).copy()
@@ -151,7 +154,7 @@ class _Pen:
         return y
 
     def wrap(self, text: str, width: int) -> list[str]:
-        """Break a text between words, and words that are wider than ``width`` anywhere."""
+        """Break a text between words, and words that are wider than ``width`` after a hyphen or anywhere."""
         lines: list[str] = []
         for word in text.split():
             joined = f"{lines[-1]} {word}" if lines else word
@@ -162,6 +165,7 @@ class _Pen:
             while len(rest) > 1 and self.font.getlength(rest) > width:
                 lengths = range(len(rest) - 1, 0, -1)
                 fitting = next(n for n in lengths if n == 1 or self.font.getlength(rest[:n]) <= width)
+                fitting = rest.rfind("-", 0, fitting) + 1 or fitting
                 lines.append(rest[:fitting])
                 rest = rest[fitting:]
             lines.append(rest)
@@ -182,16 +186,15 @@ class _Plan:
     titles: list[tuple[list[str], Any, tuple[int, int, int]]]
     columns: int
     left: int
-    top: int
     width: int
-    height: int
-    step: int
+    tops: list[int]
+    heights: list[int]
     head_height: int
     size: tuple[int, int]
 
     def place(self, index: int) -> tuple[int, int]:
         """Return left and top of a cell."""
-        return self.left + index % self.columns * (self.width + _GAP), self.top + index // self.columns * self.step
+        return self.left + index % self.columns * (self.width + _GAP), self.tops[index // self.columns]
 
 
 def _plan(
@@ -204,11 +207,11 @@ def _plan(
 ) -> _Plan:
     from PIL import ImageFont
 
-    shapes = [picture.shape for picture in pictures if picture is not None] or [(_MIN_CELL, _MIN_CELL)]
-    height, width = (max(shape[axis] for shape in shapes) for axis in (0, 1))
-    size = font_size(max(height, width))
+    shapes = [(0, 0) if picture is None else picture.shape[:2] for picture in pictures]
+    tallest, widest = (max(shape[axis] for shape in shapes) or _MIN_CELL for axis in (0, 1))
+    size = font_size(max(tallest, widest))
     pen = _Pen(None, ImageFont.load_default(size))
-    width = max(width, _MIN_CELL)
+    width = max(widest, _MIN_CELL)
     left = _GAP + max((math.ceil(pen.font.getlength(text)) + _GAP for text in row_heads), default=0)
     sheet_width = left + columns * (width + _GAP)
     large = _Pen(None, ImageFont.load_default(round(1.25 * size)))
@@ -219,9 +222,15 @@ def _plan(
     head_height += 4 * bool(head_height)
     top = _GAP + title_height + head_height
     captions = [sum(len(pen.wrap(text, width)) for text in tile.caption) for tile in tiles]
-    step = height + 4 + pen.line * max(captions, default=0) + _GAP
-    sheet_height = top + math.ceil(len(tiles) / columns) * step
-    return _Plan(pen, titles, columns, left, top, width, height, step, head_height, (sheet_width, sheet_height))
+    tops, heights = [], []
+    for first in range(0, len(tiles), columns):
+        row = range(first, min(first + columns, len(tiles)))
+        # A row as high as its pictures; a place that only has a message is as high as the largest picture.
+        high = max(shapes[index][0] for index in row)
+        heights.append(tallest if any(tiles[index].message for index in row) else high)
+        tops.append(top)
+        top += heights[-1] + 4 + pen.line * max(captions[index] for index in row) + _GAP
+    return _Plan(pen, titles, columns, left, width, tops, heights, head_height, (sheet_width, top))
 
 
 def font_size(side: int) -> int:
@@ -229,10 +238,10 @@ def font_size(side: int) -> int:
     return round(min(18, max(12, 9 + side / 56)))
 
 
-def _picture(image: FloatImage, largest: int) -> NDArray[np.uint8]:
+def _picture(image: FloatImage, scale: float) -> NDArray[np.uint8]:
     height, width, channels = image.shape
     shown: NDArray[Any] = image
-    if (scale := largest / max(height, width)) < 1:
+    if scale < 1:
         import cv2
 
         size = (max(1, round(width * scale)), max(1, round(height * scale)))

@@ -25,8 +25,10 @@ from texlab_core.run import MAX_SEED, AnalysisCache, Job, check_seed, run
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from numpy.typing import NDArray
+
     from texlab_core.params import Params
-    from texlab_core.steps import Output, Result, Step
+    from texlab_core.steps import MapKind, Output, Result, Step
 
 MAX_CELLS = 400
 _POLL_S = 0.01
@@ -406,11 +408,17 @@ def evidence_of(result: Output) -> tuple[float | None, float | None]:
     """Return the share of copied neighbours and the median candidate count, None where there is no such map."""
     from texlab_core.stats.copying import continuous_share
 
-    source = next((each.data for each in result.maps.values() if each.kind == "source"), None)
-    counts = next((each.data for each in result.maps.values() if each.kind == "count"), None)
+    source = _first_map(result, "source")
     copied = None if source is None else continuous_share(source)
-    candidates = None if counts is None else float(np.median(counts))
+    candidates = result.measures.get("median-candidates")
+    if candidates is None and (counts := _first_map(result, "count")) is not None:
+        candidates = float(np.median(counts))
     return copied, candidates
+
+
+def _first_map(result: Output, kind: MapKind) -> NDArray[Any] | None:
+    # One by one: some maps are only computed when they are looked at.
+    return next((each.data for each in map(result.maps.__getitem__, result.maps) if each.kind == kind), None)
 
 
 def sweep_of(base: Job, texts: list[str]) -> Sweep:

@@ -60,7 +60,7 @@ def sweep_sheet(
 
 def _tile(cell: Cell | None, is_grid: bool) -> Tile:
     if cell is None:
-        return Tile(None, ("...",))
+        return Tile(None, message="not run")
     lines = (cell.evidence,) if is_grid else (cell.setting, cell.evidence)
     image = None if cell.result is None else cell.result.image
     return Tile(image, tuple(line for line in lines if line), cell.error)

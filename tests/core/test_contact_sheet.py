@@ -54,6 +54,13 @@ def test_large_pictures_keep_their_mean_and_shape():
     assert sheet.shape[1] == 8 + 100 + 8
 
 
+def test_all_pictures_are_scaled_down_together():
+    black = [np.zeros(shape, np.float32) for shape in ((200, 200, 1), (50, 100, 3))]
+    sheet = contact_sheet([Tile(each) for each in black], 2, largest=100)
+    dark = (sheet == 0).all(axis=2)
+    assert dark.sum() == 100 * 100 + 25 * 50
+
+
 @pytest.mark.parametrize("side", [16, 64, 128, 256, 512])
 @pytest.mark.parametrize("heads", [False, True])
 def test_texts_have_ink_and_none_is_cut_off(side, heads):

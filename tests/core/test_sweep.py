@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 
 import numpy as np
@@ -254,6 +255,8 @@ def test_evidence_comes_from_the_maps():
     maps = {"source": Map(source, "source", "Source"), "count": Map(counts, "count", "Candidates")}
     output = Output(image=np.zeros((8, 8, 1), np.float32), maps=maps)
     assert evidence_of(output) == (1.0, 31.5)
+    measured = dataclasses.replace(output, measures={"median-candidates": 3.0, "copied-share": 0.0})
+    assert evidence_of(measured) == (1.0, 3.0)
 
 
 class OnePlace:
