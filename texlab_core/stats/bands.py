@@ -7,7 +7,7 @@ it does not have.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Band:
     Parameters
     ----------
     key
-        Its place; ``kind`` is highpass, oriented, laplacian or lowpass.
+        Its place; ``kind`` is highpass, oriented, bandpass or lowpass.
     plane
         (h, w) float32.
     title
@@ -128,14 +128,22 @@ def split(plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientatio
         Levels besides the residuals; orientations matter to the steerable pyramid only.
     """
     levels = min(levels, most_levels(plane.shape, kind))
+    planes: Sequence[NDArray[np.float32]]
     if kind == "steerable":
-        items = list(steerable.build_reflected(plane, levels, orientations).items())
-    elif kind == "laplacian":
-        planes = laplacian.build(plane, levels)
-        items = list(zip(_laplacian_keys(levels), planes, strict=True))
+        planes = [each for _, each in steerable.build_reflected(plane, levels, orientations).items()]
     else:
-        items = [(BandKey("lowpass", level), each) for level, each in enumerate(gaussian.build(plane, levels))]
-    return tuple(Band(key, each, *names(key, kind, orientations)) for key, each in items)
+        planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels)
+    keys = band_keys(kind, levels, orientations)
+    return tuple(Band(key, each, *names(key, kind, orientations)) for key, each in zip(keys, planes, strict=True))
+
+
+def band_keys(kind: PyramidKind, levels: int, orientations: int) -> tuple[BandKey, ...]:
+    """Return the places of all subbands, from fine to coarse."""
+    if kind == "steerable":
+        return steerable.band_keys(levels, orientations)
+    if kind == "gaussian":
+        return tuple(BandKey("lowpass", level) for level in range(levels + 1))
+    return (*(BandKey("bandpass", level) for level in range(levels)), BandKey("lowpass", levels))
 
 
 def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]:
@@ -145,7 +153,7 @@ def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]
     if key.kind == "oriented":
         angle = f"{180 * key.orientation / orientations:.3g}°"
         return f"level {key.level}, waves along {angle}", f"{key.level} · {angle}"
-    if key.kind == "laplacian":
+    if key.kind == "bandpass":
         return f"level {key.level}", str(key.level)
     return (f"level {key.level}", str(key.level)) if kind == "gaussian" else ("low-pass residual", "low")
 
@@ -203,7 +211,7 @@ def _collapse_amplified(
 ) -> NDArray[np.float32]:
     if kind == "laplacian":
         planes = laplacian.build(plane, levels)
-        keys = _laplacian_keys(levels)
+        keys = band_keys(kind, levels, orientations)
         bands = [each * np.float32(gains.get(key, 1)) for key, each in zip(keys, planes, strict=True)]
         return laplacian.collapse(bands)
     # The mirrored plane is periodic without a jump; its first quadrant is the plane.
@@ -216,12 +224,3 @@ def _collapse_amplified(
     height, width = plane.shape
     quadrant: NDArray[np.float32] = transform.inverse(total)[:height, :width]
     return quadrant
-
-
-def _laplacian_keys(levels: int) -> list[BandKey]:
-    return [*(BandKey("laplacian", level) for level in range(levels)), BandKey("lowpass", levels)]
-
-
-def spread(values: NDArray[Any]) -> float:
-    """Return the standard deviation, computed in float64."""
-    return float(np.std(values, dtype=np.float64))
