@@ -39,30 +39,59 @@ def rasters(sampling) -> Pyramids:
     return Pyramids(features, sources, thresholds)
 
 
+def flat(pyramids: Pyramids, level: int) -> tuple[np.ndarray, ...]:
+    """Return the levels from ``level`` on one after the other, as compiled loops read them fastest.
+
+    Returns
+    -------
+    tuple
+        Features (sum of h w, J), first row and width of each level; source rows (sum of H W,), first and width
+        of each level; thresholds.
+    """
+    tables, sources = pyramids.features[level:], pyramids.sources[level:]
+    features = np.concatenate([table.reshape(-1, table.shape[2]) for table in tables])
+    starts = np.cumsum([0] + [table.shape[0] * table.shape[1] for table in tables[:-1]])
+    widths = np.array([table.shape[1] for table in tables])
+    rows = [
+        start + source[..., 0].astype(np.int64) * width + source[..., 1]
+        for start, width, source in zip(starts, widths, sources, strict=True)
+    ]
+    out_starts = np.cumsum([0] + [row.size for row in rows[:-1]])
+    out_widths = np.array([row.shape[1] for row in rows])
+    thresholds = np.ascontiguousarray(pyramids.thresholds[level:])
+    return (
+        features,
+        starts,
+        widths,
+        np.concatenate([row.ravel() for row in rows]),
+        out_starts,
+        out_widths,
+        thresholds,
+    )
+
+
 def candidate_sets(pyramids: Pyramids, level: int, parity: bool) -> np.ndarray:
     """Return for every location of a level (raster order) which exemplar locations are candidates, (Q, P) bool."""
-    top = len(pyramids.features) - 1
-    features = numba.typed.List(pyramids.features[level : top + 1])
-    sources = numba.typed.List(pyramids.sources[level : top + 1])
-    return _sets(features, sources, np.ascontiguousarray(pyramids.thresholds[level : top + 1]), parity)
+    return _sets(flat(pyramids, level), pyramids.sources[level].shape, pyramids.features[level].shape, parity)
 
 
 @numba.njit(cache=False)
-def _is_candidate(features, sources, thresholds, y_out, x_out, y, x):
-    for v in range(len(features) - 1, 0, -1):
-        there = sources[v][y_out >> v, x_out >> v]
-        table = features[v]
+def _is_candidate(pyramids, y_out, x_out, y, x):
+    features, starts, widths, sources, out_starts, out_widths, thresholds = pyramids
+    for v in range(starts.size - 1, 0, -1):
+        here = starts[v] + (y >> v) * widths[v] + (x >> v)
+        there = sources[out_starts[v] + (y_out >> v) * out_widths[v] + (x_out >> v)]
         for j in range(thresholds.shape[1]):
-            difference = table[y >> v, x >> v, j] - table[there[0], there[1], j]
+            difference = features[here, j] - features[there, j]
             if difference * difference > thresholds[v, j]:
                 return False
     return True
 
 
 @numba.njit(cache=False)
-def _sets(features, sources, thresholds, parity):
-    rows, columns = sources[0].shape[:2]
-    height, width = features[0].shape[:2]
+def _sets(pyramids, output, exemplar, parity):
+    rows, columns = output[0], output[1]
+    height, width = exemplar[0], exemplar[1]
     found = np.zeros((rows * columns, height * width), np.bool_)
     for y_out in range(rows):
         for x_out in range(columns):
@@ -70,25 +99,25 @@ def _sets(features, sources, thresholds, parity):
                 for x in range(width):
                     if parity and ((y ^ y_out) & 1 or (x ^ x_out) & 1):
                         continue
-                    if _is_candidate(features, sources, thresholds, y_out, x_out, y, x):
+                    if _is_candidate(pyramids, y_out, x_out, y, x):
                         found[y_out * columns + x_out, y * width + x] = True
     return found
 
 
 @numba.njit(cache=False)
-def sample_some(features, sources, thresholds, chosen, draws):
+def sample_some(pyramids, exemplar, chosen, draws):
     """Do the innermost loops for some locations of the first level given, as the pseudo-code does; returns a sum.
 
     ``chosen`` (n, 2) rows and columns of the output, ``draws`` (n,) uniform numbers.
     """
-    height, width = features[0].shape[:2]
+    height, width = exemplar[0], exemplar[1]
     candidates = np.empty(height * width, np.int64)
     total = 0
     for n in range(chosen.shape[0]):
         count = 0
         for y in range(height):
             for x in range(width):
-                if _is_candidate(features, sources, thresholds, chosen[n, 0], chosen[n, 1], y, x):
+                if _is_candidate(pyramids, chosen[n, 0], chosen[n, 1], y, x):
                     candidates[count] = y * width + x
                     count += 1
         total += candidates[int(draws[n] * count)]
