@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from texlab_core.stats import histogram
+from texlab_core.tasks import finish, row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from texlab_core.steps import FloatImage
+    from texlab_core.tasks import Task
 
 SMALLEST_SPREAD = 1e-3
 CONSTANT_SPREAD = 1e-6
@@ -57,12 +59,12 @@ class ColourAxes:
         """Return planes (A, H, W) float32 of mean 0 and covariance 1: M (x - mean) with M = S^-1 U^t."""
         matrix = self.directions / self.spread[:, None]
         offset = -np.sum(matrix * self.mean, axis=1)
-        return combine(np.moveaxis(pixels, -1, 0), matrix, offset)
+        return finish(combine(np.moveaxis(pixels, -1, 0), matrix, offset))
 
-    def from_axes(self, planes: NDArray[np.float32]) -> FloatImage:
-        """Return the colours (H, W, C) float32 of planes (A, H, W): M^-1 y + mean."""
-        channels = combine(planes, (self.directions * self.spread[:, None]).T, self.mean)
-        return np.ascontiguousarray(np.moveaxis(channels, 0, -1))
+    def from_axes(self, planes: Sequence[NDArray[np.float32]]) -> Task[FloatImage]:
+        """Return the colours (H, W, C) float32 of A planes (H, W): M^-1 y + mean."""
+        channels = yield from combine(planes, (self.directions * self.spread[:, None]).T, self.mean)
+        return (yield from interleave(channels))
 
 
 def principal_axes(pixels: NDArray[Any]) -> ColourAxes:
@@ -92,7 +94,7 @@ def principal_axes(pixels: NDArray[Any]) -> ColourAxes:
 
 def transport_palette(
     pixels: FloatImage, exemplar: FloatImage, rounds: int, streams: RandomStreams
-) -> Generator[int, None, FloatImage]:
+) -> Task[FloatImage]:
     """Move an image's colours onto an exemplar's palette by sliced optimal transport.
 
     In every round the colours are projected onto three random orthogonal directions, and along each of them
@@ -127,28 +129,36 @@ def transport_palette(
             turn, _ = np.linalg.qr(streams("palette", number).standard_normal((channels, channels)))
         moved = []
         for index, direction in enumerate(turn):
-            target = histogram.sorted_sample(combine(wanted, direction[None])[0])
+            target = histogram.sorted_sample((yield from combine(wanted, direction[None])))
             yield target.size
-            plane = combine(planes, direction[None])[0]
-            for _ in histogram.match_ranks_in_place(plane, target, streams.key("palette", number, index)):
-                yield plane.size // 8
+            (plane,) = yield from combine(planes, direction[None])
+            yield from histogram.match_ranks_in_place(plane, target, streams.key("palette", number, index))
             moved.append(plane)
-            yield plane.size
-        planes = np.stack(moved) if number == rounds else combine(moved, turn.T)
-    return np.ascontiguousarray(np.moveaxis(planes, 0, -1))
+        planes = np.stack(moved) if number == rounds else (yield from combine(moved, turn.T))
+    return (yield from interleave(planes))
 
 
 def combine(
     planes: Sequence[NDArray[Any]] | NDArray[Any],
     matrix: NDArray[np.float64],
     offset: NDArray[np.float64] | None = None,
-) -> NDArray[np.float32]:
+) -> Task[NDArray[np.float32]]:
     """Return ``matrix @ planes + offset``, (n, H, W) float32, in an order that no library's threads can change."""
     result = np.empty((len(matrix), *planes[0].shape), np.float32)
-    product = np.empty(planes[0].shape, np.float32)
-    for number, row in enumerate(matrix.astype(np.float32)):
-        result[number] = 0 if offset is None else offset[number]
-        for plane, factor in zip(planes, row, strict=True):
-            np.multiply(plane, factor, out=product)
-            result[number] += product
+    for block in row_blocks(planes[0].shape, 2**17):
+        for number, row in enumerate(matrix.astype(np.float32)):
+            total = result[number, block]
+            total[...] = 0 if offset is None else offset[number]
+            for plane, factor in zip(planes, row, strict=True):
+                total += plane[block] * factor
+        yield result[:, block].size
     return result
+
+
+def interleave(channels: NDArray[np.float32]) -> Task[FloatImage]:
+    """Return channels (C, H, W) as an image (H, W, C)."""
+    image = np.empty((*channels.shape[1:], len(channels)), np.float32)
+    for block in row_blocks(image.shape):
+        image[block] = np.moveaxis(channels[:, block], 0, -1)
+        yield image[block].size // 4
+    return image

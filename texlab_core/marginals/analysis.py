@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.steps import FloatImage
+    from texlab_core.tasks import Task
 
 Pyramid = Literal["steerable", "laplacian", "textbook"]
 Border = Literal["reflect", "periodic", "wrap"]
@@ -89,14 +90,10 @@ class TextureModel:
         """Number of channels of the exemplar."""
         return len(self.palette)
 
-    def to_planes(self, image: FloatImage) -> NDArray[np.float32]:
-        """Return the planes (A, H, W) of an image (H, W, C)."""
-        return image[None, ..., 0] if self.axes is None else self.axes.to_axes(image)
-
-    def to_image(self, planes: Sequence[NDArray[np.float32]], size: tuple[int, int]) -> FloatImage:
+    def to_image(self, planes: Sequence[NDArray[np.float32]], size: tuple[int, int]) -> Task[FloatImage]:
         """Return the image (H, W, C) of planes; not clipped."""
         if self.axes is not None and planes:
-            return self.axes.from_axes(np.stack(planes))
+            return (yield from self.axes.from_axes(planes))
         if planes:
             return np.repeat(planes[0][..., None], self.channels, axis=2)
         middle = np.array([sample[sample.size // 2] for sample in self.palette], np.float32)

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 import numpy as np
 
-from texlab_core.color import transport_palette
+from texlab_core.color import interleave, transport_palette
 from texlab_core.inputs import exemplar_of
 from texlab_core.marginals import analysis
 from texlab_core.marginals.rounds import Plan, match, match_round, measure
 from texlab_core.params import Knob, Params
 from texlab_core.registry import Method, register
 from texlab_core.steps import Curve, Output, Step
-from texlab_core.tasks import crew
+from texlab_core.tasks import crew, finish, row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -220,7 +220,11 @@ class _Run:
     def start(self) -> Generator[Step, None, None]:
         """Make noise with the exemplar's pixel values on each axis."""
         for axis, target in enumerate(self.model.planes):
-            plane = self.streams("noise", axis).random(self.size, dtype=np.float32)
+            plane = np.empty(self.size, np.float32)
+            noise = self.streams("noise", axis)
+            for rows in row_blocks(self.size):
+                plane[rows] = noise.random(plane[rows].shape, dtype=np.float32)
+                yield self._step("noise")
             work = match(plane, target.pixels, self.plan.matching, self.streams.key("start", axis))
             yield from self._steps(work, "noise")
             self.planes.append(plane)
@@ -244,13 +248,13 @@ class _Run:
         self.distances[-1] = yield from self._measure(self.planes)
         self.final = self.distances[-1]
         self.done += 1
-        image = self.model.to_image(self.planes, self.size)
+        image = yield from self._steps(self.model.to_image(self.planes, self.size), "colours")
         if self.model.axes is not None or not self.model.planes:
             image = yield from self._colours(image)
         self.image = np.clip(image, 0, 1, out=image)
         self.done += 1
         if self.model.axes is not None and self.model.planes:
-            self.final = yield from self._measure(self.model.to_planes(image))
+            self.final = yield from self._measure(self.model.axes.to_axes(image))
         yield from self._measure_pixels(image)
         self.done = self.total
         yield self._step("done", {"mean-distance": _mean(self.distances[-1])})
@@ -285,7 +289,7 @@ class _Run:
             key = self.streams.key("channel", channel)
             work = match(plane, analysis.Target(sample, 1.0), self.plan.matching, key)
             yield from self._steps(work, "colours")
-        return np.ascontiguousarray(np.moveaxis(channels, 0, -1))
+        return (yield from self._steps(interleave(channels), "colours"))
 
     def output(self, image: FloatImage) -> Output:
         """Return the picture with its evidence."""
@@ -329,12 +333,14 @@ class _Run:
                 yield self._step(stage)
 
     def _step(self, stage: str, metrics: Mapping[str, float] | None = None, frame: str | None = None) -> Step:
-        return Step(self.done, self.total, stage, metrics or {}, self._preview, frame)
+        # The first planes of the noise make no picture yet.
+        whole = len(self.planes) == len(self.model.planes)
+        return Step(self.done, self.total, stage, metrics or {}, self._preview if whole else None, frame)
 
     def _preview(self) -> FloatImage:
         image = self.image
         if image is None:
-            image = self.model.to_image(self.planes, self.size)
+            image = finish(self.model.to_image(self.planes, self.size))
         return np.clip(image, 0, 1)
 
 
