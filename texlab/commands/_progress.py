@@ -43,3 +43,25 @@ def progress(title: str) -> Iterator[Callable[[Step], None] | None]:
             bar.update(task, completed=step.fraction if step.phase == "synthesis" else 0.0, stage=step.stage)
 
         yield show
+
+
+@contextlib.contextmanager
+def share_bar(title: str) -> Iterator[Callable[[float], None] | None]:
+    """Show a bar for several jobs within the block.
+
+    Yields
+    ------
+    callable or None
+        What takes the share that is done, 0 to 1; None when standard error is no terminal.
+    """
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    percent = TextColumn("{task.percentage:>3.0f} %")
+    columns = (TextColumn("{task.description}"), BarColumn(), percent, TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(title, total=1.0)
+        yield lambda share: bar.update(task, completed=share)

@@ -36,7 +36,7 @@ _BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
 
 def configure(parser: Parser) -> None:
     """Add the arguments."""
-    parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar")
+    parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar, or a code X.msg.json")
     parser.add_argument("--method", required=True, metavar="ID", help="one of texlab methods")
     add_output_options(parser)
     parser.add_argument("--size", metavar="WxH", help="size of the result (default: the exemplar's)")
@@ -69,15 +69,14 @@ def execute(args: argparse.Namespace) -> int:
     outputs = check_outputs(args, _BITS[args.bits or "8"])
     refuse_overwriting(outputs.image, args.image)
 
-    from texlab_core.images import as_exemplar
+    from texlab.commands._sources import load_inputs
     from texlab_core.run import Job
 
-    exemplar = as_exemplar(args.image, scale=scale, crop=crop)
     job = Job(
         method=args.method,
-        inputs={"exemplar": exemplar},
+        inputs=load_inputs(args.image, method, scale=scale, crop=crop),
         params=params,
-        size=exemplar.size if size is None else size,
+        size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
     )
     result = make(job, outputs)

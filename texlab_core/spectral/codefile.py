@@ -117,7 +117,7 @@ def read_code(source: Path | str | bytes, *, what: str | None = None) -> CodeFil
 
 def write_code(code: MsgCode, path: str | os.PathLike[str], exemplar: str = "") -> None:
     """Write a code under a temporary name, then rename; raises ``InputError`` when that fails."""
-    write_whole(path, _layout(code_to_json(code, exemplar)).encode())
+    write_whole(path, (_layout(code_to_json(code, exemplar)) + "\n").encode())
 
 
 def load_code_input(path: Path) -> DataInput:
@@ -245,17 +245,12 @@ def _table(values: tuple[float, ...]) -> list[list[float]]:
     return [list(values[start : start + ORIENTATIONS]) for start in range(0, CHANNELS, ORIENTATIONS)]
 
 
-def _layout(data: dict[str, Any]) -> str:
+def _layout(data: Any, margin: str = "") -> str:
     """Return JSON text with one row of numbers on a line."""
-    lines = [f"  {json.dumps(key)}: {_value(value)}" for key, value in data.items()]
-    return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return (
-            "{\n" + ",\n".join(f"    {json.dumps(key)}: {_value(each)}" for key, each in value.items()) + "\n  }"
-        )
-    if isinstance(value, list) and value and isinstance(value[0], list):
-        return "[\n" + ",\n".join(f"      {json.dumps(row)}" for row in value) + "\n    ]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    inner = margin + "  "
+    if isinstance(data, dict):
+        lines = [f"{inner}{json.dumps(key)}: {_layout(value, inner)}" for key, value in data.items()]
+        return "{\n" + ",\n".join(lines) + f"\n{margin}}}"
+    if isinstance(data, list) and data and isinstance(data[0], list):
+        return "[\n" + ",\n".join(f"{inner}{json.dumps(row)}" for row in data) + f"\n{margin}]"
+    return json.dumps(data, ensure_ascii=False, allow_nan=False)

@@ -89,7 +89,7 @@ class Spectrum:
         return np.roll(whole, (height // 2, width // 2), axis=(0, 1))
 
     def log_picture(self) -> Plane:
-        """Return the whole plane in dB above the rounding to 256 levels, at least 0, zero frequency in the middle."""
+        """Return the plane in dB above the rounding to 256 levels, at least 0, zero frequency in the centre."""
         decibels: Plane = 10 * np.log10(np.maximum(self.full() / np.float32(QUANTIZATION), np.float32(1)))
         return decibels
 

@@ -1,0 +1,230 @@
+"""Several methods on one exemplar, side by side: pictures, parameter counts and distances between spectra.
+
+Reference: Navarro & Portilla 1996, Fig. 8.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from threading import Event, Lock
+from typing import TYPE_CHECKING
+
+from texlab_core.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
+from texlab_core.errors import Cancelled, InputError
+from texlab_core.registry import find_method, methods
+from texlab_core.run import MAX_SEED, Job, run
+from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from texlab_core.inputs import ImageInput
+    from texlab_core.params import Params
+    from texlab_core.stats.spectrum import Spectrum
+    from texlab_core.steps import Result, Step
+
+# The paper's Fig. 8, and the four papers' own methods.
+FIG_8 = ("uncoded", "msg", "car", "ac-h")
+FIRST_SIGHT = ("heeger-bergen", "de-bonet", "msg", "efros-leung")
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One method's result beside the exemplar.
+
+    Parameters
+    ----------
+    job
+        What was done.
+    result
+        None when it failed.
+    distance
+        Log-spectral distance from the exemplar, in dB.
+    variation
+        Total variation between the spectra, 0 to 1.
+    error
+        Why it failed, one sentence.
+    """
+
+    job: Job
+    result: Result | None
+    distance: float = 0.0
+    variation: float = 0.0
+    error: str = ""
+
+    @property
+    def parameters(self) -> int | None:
+        """How many numbers the method keeps of the exemplar; None when it keeps the exemplar itself."""
+        count = None if self.result is None else self.result.measures.get("parameters")
+        return None if count is None else int(count)
+
+    def caption(self) -> tuple[str, ...]:
+        """Return the title, the number of parameters, and the distances as lines of text."""
+        title = find_method(self.job.method).title
+        if self.result is None:
+            return (title,)
+        count = "" if self.parameters is None else f"{self.parameters} numbers"
+        return tuple(filter(None, (title, count, distance_text(self.distance, self.variation))))
+
+
+def distance_text(distance: float, variation: float) -> str:
+    """Return both distances between spectra as text."""
+    return f"{distance:.1f} dB, {100 * variation:.0f} % of power moved"
+
+
+def plan(
+    exemplar: ImageInput,
+    names: Sequence[str],
+    *,
+    size: tuple[int, int] | None = None,
+    seed: int = 0,
+    same_phase: bool = False,
+    params: Mapping[str, Params] | None = None,
+) -> tuple[Job, ...]:
+    """Return one job for each method, all checked.
+
+    Parameters
+    ----------
+    exemplar
+        The texture.
+    names
+        Ids of methods; one may come more than once.
+    size
+        Height and width of the results; None takes the exemplar's.
+    seed
+        Of the first method.
+    same_phase
+        All take the same seed, which gives the spectral methods the same random phase; else each one takes the
+        next seed.
+    params
+        Parameters by method; those left out take their defaults.
+
+    Raises
+    ------
+    InputError
+        When there is no method, one is unknown, or a job cannot work.
+    """
+    if not names:
+        raise InputError(f"methods: must name at least one of {', '.join(methods())}.")
+    return tuple(
+        Job(
+            method=name,
+            inputs={"exemplar": exemplar},
+            params=(params or {}).get(name),  # type: ignore[arg-type]  # None takes the defaults
+            size=exemplar.size if size is None else size,
+            seed=seed if same_phase else (seed + index) % (MAX_SEED + 1),
+        )
+        for index, name in enumerate(names)
+    )
+
+
+def compare(
+    jobs: Sequence[Job],
+    *,
+    on_progress: Callable[[float], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> tuple[Compared, ...]:
+    """Run jobs, as many at a time as there are cores, and measure how far their spectra are from the exemplar's.
+
+    Parameters
+    ----------
+    jobs
+        From :func:`plan`.
+    on_progress
+        Called with the share that is done, from several threads in turn.
+    should_stop
+        Asked between steps.
+
+    Returns
+    -------
+    tuple
+        In the order of the jobs; those that failed hold an error.
+
+    Raises
+    ------
+    Cancelled
+        When ``should_stop`` said so.
+    """
+    if not jobs:
+        return ()
+    shares = [0.0] * len(jobs)
+    lock, stop = Lock(), Event()
+    spectra: dict[str, Spectrum] = {}
+
+    def stopped() -> bool:
+        return stop.is_set() or (should_stop is not None and should_stop())
+
+    def one(index: int) -> Compared:
+        job = jobs[index]
+
+        def watch(step: Step) -> None:
+            with lock:
+                # Progress of the analysis is not counted: it is a small part of every method.
+                shares[index] = max(shares[index], step.fraction if step.phase == "synthesis" else 0.0)
+                if on_progress is not None:
+                    on_progress(sum(shares) / len(shares))
+
+        try:
+            result = run(job, watch, stopped, threads=1)
+        except InputError as error:
+            return Compared(job, None, error=str(error))
+        exemplar = job.inputs["exemplar"]
+        with lock:
+            if exemplar.sha256 not in spectra:
+                spectra[exemplar.sha256] = power_spectrum(exemplar.pixels)  # type: ignore[union-attr]
+        return measured(result, spectra[exemplar.sha256])
+
+    with ThreadPoolExecutor(min(len(jobs), os.cpu_count() or 1)) as pool:
+        try:
+            return tuple(pool.map(one, range(len(jobs))))
+        except BaseException as error:
+            stop.set()
+            if stopped() and should_stop is not None and should_stop():
+                raise Cancelled from error
+            raise
+
+
+def measured(result: Result, exemplar: Spectrum) -> Compared:
+    """Return a result with the distances of its spectrum from the exemplar's."""
+    spectrum = power_spectrum(result.image)
+    return Compared(
+        result.job, result, log_spectral_distance(exemplar, spectrum), total_variation(exemplar, spectrum)
+    )
+
+
+def comparison_sheet(
+    exemplar: ImageInput,
+    compared: Sequence[Compared],
+    *,
+    columns: int | None = None,
+    largest: int = LARGEST_CELL,
+) -> NDArray[np.uint8]:
+    """Draw the exemplar and the results beside it, each with its caption.
+
+    Parameters
+    ----------
+    exemplar
+        Drawn first.
+    compared
+        From :func:`compare`.
+    columns
+        Pictures in a row; one row up to six when None.
+    largest
+        Longest side at which a picture is shown.
+
+    Returns
+    -------
+    uint8 array
+        (H, W, 3).
+    """
+    height, width = exemplar.size
+    tiles = [Tile(exemplar.pixels, ("Exemplar", exemplar.name, f"{width} x {height}"))]
+    tiles += [
+        Tile(None if each.result is None else each.result.image, each.caption(), each.error) for each in compared
+    ]
+    return contact_sheet(tiles, columns or series_columns(len(tiles)), largest=largest)
