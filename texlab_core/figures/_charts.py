@@ -114,7 +114,13 @@ def _spread(places: list[float], least: float) -> list[float]:
 
 
 def heat_table(
-    values: NDArray[Any], rows: Sequence[str], columns: Sequence[str], *, corner: str, highest: float
+    values: NDArray[Any],
+    rows: Sequence[str],
+    columns: Sequence[str],
+    *,
+    corner: str,
+    highest: float,
+    digits: int = 1,
 ) -> NDArray[np.uint8]:
     """Draw a table whose cells are the darker, the larger their numbers are.
 
@@ -128,6 +134,8 @@ def heat_table(
         What the heads are.
     highest
         The number that is shown darkest.
+    digits
+        After the decimal point.
 
     Returns
     -------
@@ -153,7 +161,9 @@ def heat_table(
             x = left + column * width
             draw.rectangle((x + 1, y + 1, x + width - 2, y + height - 2), shade)
             ink = (255, 255, 255) if share > 0.5 else _INK
-            draw.text((x + width // 2, y + height // 2), f"{values[row, column]:.2f}", ink, font, anchor="mm")
+            draw.text(
+                (x + width // 2, y + height // 2), f"{values[row, column]:.{digits}f}", ink, font, anchor="mm"
+            )
     return np.asarray(image)
 
 
