@@ -261,8 +261,6 @@ def _draw(members: Ints, first: int, last: int, literal: bool, bits: int, key: n
     """Choose a child of ``members[first:last]`` for a synthesized location."""
     parity = place & 3
     size = last - first
-    if size == 1 and not literal:
-        return int(4 * members[first] + parity)
     offset, one, two = _permutation(key, place)
     count = 4 * size if literal else size
     if count * count > PROPOSAL_COST << bits:
@@ -353,6 +351,11 @@ def choose_sources(
         if which >= 0:
             low, high = starts[which], starts[which + 1]
             counts[n] = high - low
+            if high - low == 1 and not literal:
+                # The only candidate: no need to rank it. This is what most locations of a texture have.
+                for place in range(4):
+                    children[4 * n + place] = 4 * members[low] + place
+                continue
             for place in range(4 * n, 4 * n + 4):
                 children[place] = _draw(members, low, high, literal, bits, key, place)
             work += min(4 * (high - low), 1024)

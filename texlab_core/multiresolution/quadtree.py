@@ -8,6 +8,7 @@ run of locations is a run of locations on every finer level.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,14 +49,11 @@ class Grid:
         return (self.rows * self.columns) << 2 * (self.depth - level)
 
     def parts(self, level: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        """Return what row and column contribute to a location: (height,) and (width,) int32, to be added."""
-        height, width = self.shape(level)
-        shift = self.depth - level
-        row, column = np.arange(height), np.arange(width)
-        inside = 2**shift - 1
-        row_part = ((row >> shift) * self.columns << 2 * shift) + 2 * _spread(row & inside, shift)
-        column_part = (column >> shift << 2 * shift) + _spread(column & inside, shift)
-        return row_part.astype(np.int32), column_part.astype(np.int32)
+        """Return what row and column contribute to a location: (height,) and (width,) int32, to be added.
+
+        Both are read-only and shared.
+        """
+        return _parts(self, level)
 
     def order(self, level: int) -> NDArray[np.int32]:
         """Return the location of every pixel of a level, (height, width) int32."""
@@ -84,6 +82,20 @@ class Grid:
         out = np.empty((self.count(level), *raster.shape[2:]), raster.dtype)
         out[self.order(level)] = raster
         return out
+
+
+@lru_cache(maxsize=64)
+def _parts(grid: Grid, level: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    height, width = grid.shape(level)
+    shift = grid.depth - level
+    row, column = np.arange(height), np.arange(width)
+    inside = 2**shift - 1
+    row_part = ((row >> shift) * grid.columns << 2 * shift) + 2 * _spread(row & inside, shift)
+    column_part = (column >> shift << 2 * shift) + _spread(column & inside, shift)
+    parts = row_part.astype(np.int32), column_part.astype(np.int32)
+    for part in parts:
+        part.flags.writeable = False
+    return parts
 
 
 def _spread(value: NDArray[np.int64], bits: int) -> NDArray[np.int64]:
