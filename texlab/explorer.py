@@ -20,6 +20,7 @@ from texlab.docks import dock_classes
 from texlab.jobs import Slots, Task, Worker
 from texlab.memory import memory_text
 from texlab.opening import IMAGE_SUFFIXES, Opener
+from texlab.overlays import Overlays
 from texlab.pictures import describe_pixel, to_picture
 from texlab.preset_manager import PresetManager
 from texlab.session import Column, Session, State
@@ -67,6 +68,7 @@ class Explorer(QObject):
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
         self.workspace.set_theme(themes.theme)
         self.help: HelpWindow | None = None
+        self.overlays = Overlays(self.workspace.columns, self)
         self._closed = False
         self._shown_exemplar = ""
         self._dock_slots = Slots(1)
@@ -131,6 +133,7 @@ class Explorer(QObject):
         for host in self.hosts:
             host.close()
         self._thumbnails.close()
+        self.overlays.close()
         self.controller.close()
         self.crash.remove()
         if self.help is not None:
@@ -233,6 +236,7 @@ class Explorer(QObject):
         view.stop_wanted.connect(controller.stop_column)
         view.command.connect(self._column_command)
         view.hovered.connect(self._column_hovered)
+        view.map_chosen.connect(self.overlays.choose)
 
     # What the user does.
 
@@ -408,6 +412,7 @@ class Explorer(QObject):
         )
         self.workspace.show_scene(scene)
         self.window.parameters.show_scene(scene.selected)
+        self.overlays.show_scene(scene)
         for host in self.hosts:
             host.show_scene(scene)
         counts = [column.status for column in scene.columns]

@@ -116,6 +116,10 @@ class MainWindow(QMainWindow):
             else:
                 self.tabifyDockWidget(first, dock)
             self.docks[each.name] = dock
+        for menu in QApplication.topLevelWidgets():
+            if isinstance(menu, QMenu) and menu.parent() is None:
+                # pyqtgraph makes its menus without a parent, and nobody would delete them.
+                menu.setParent(self, menu.windowFlags())
         self._fill_docks_menu()
         if first is not None:
             self.resizeDocks([first], [260], Qt.Orientation.Vertical)

@@ -391,3 +391,25 @@ def test_help_opens_the_page_of_the_method(qtbot: Any, explorer: Explorer) -> No
     assert explorer.help is not None
     assert explorer.help.browser.page == "heeger-bergen"
     assert "pyramid" in explorer.help.browser.toPlainText().lower()
+
+
+def test_a_map_is_laid_over_the_picture(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> None:
+    from texlab.colouring import colour_map
+
+    explorer = open_window(str(texture), [("de-bonet", texlab_params("de-bonet"))])
+    (column_id,) = ids(explorer)
+    view = explorer.workspace.columns[column_id]
+    assert "source" in {action.objectName().split("-")[1] for action in view.map_menu.actions()}
+    source = next(action for action in view.map_menu.actions() if action.objectName() == f"map-source-{column_id}")
+    source.trigger()
+    qtbot.waitUntil(lambda: view.pane._overlay is not None, timeout=10_000)
+    shown = explorer.controller.column_scene(column_id).result.maps["source"]
+    assert np.array_equal(view.pane._overlay.image, colour_map(shown, (40, 48)))
+    view.map_menu.actions()[0].trigger()
+    assert view.pane._overlay is None
+
+
+def texlab_params(method: str) -> Any:
+    from texlab_core.registry import methods
+
+    return methods()[method].params()

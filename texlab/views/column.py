@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
@@ -50,6 +51,7 @@ class ColumnView(QFrame):
     command = Signal(int, str)
     hovered = Signal(int, int, int)
     pixel_clicked = Signal(int, int, int)
+    map_chosen = Signal(int, str)
 
     COMMANDS = (
         ("duplicate", "Duplicate column"),
@@ -89,6 +91,11 @@ class ColumnView(QFrame):
             action.setObjectName(f"column-{name}-{column_id}")
             action.triggered.connect(lambda _=False, name=name: self.command.emit(self.column_id, name))
             self.actions_by_name[name] = action
+        self.menu.addSeparator()
+        self.map_menu = self.menu.addMenu("Lay a map over the picture")
+        self.map_menu.setObjectName(f"maps-{column_id}")
+        self.map_group = QActionGroup(self)
+        self._maps: tuple[object, ...] = ()
         self.menu_button.setMenu(self.menu)
         self.menu_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu_button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
@@ -164,6 +171,21 @@ class ColumnView(QFrame):
             self.actions_by_name[name].setEnabled(scene.result is not None)
         self.actions_by_name["copy"].setEnabled(scene.picture is not None)
         self._set_flag("failed", scene.status == "failed")
+
+    def show_maps(self, maps: tuple[tuple[str, str], ...], chosen: str) -> None:
+        """Offer the maps (name, title) as overlays."""
+        if (maps, chosen) == self._maps:
+            return
+        self._maps = (maps, chosen)
+        self.map_menu.clear()
+        self.map_menu.setEnabled(bool(maps))
+        for name, title in (("", "None"), *maps):
+            action = self.map_menu.addAction(title)
+            action.setObjectName(f"map-{name or 'none'}-{self.column_id}")
+            action.setCheckable(True)
+            action.setChecked(name == chosen)
+            action.setActionGroup(self.map_group)
+            action.triggered.connect(lambda _=False, name=name: self.map_chosen.emit(self.column_id, name))
 
     def set_chosen(self, chosen: bool) -> None:
         """Frame the chosen column."""
