@@ -62,7 +62,7 @@ def grown(pixels: FloatImage, alpha: float, side: int) -> Callable[[], object]:
     """Return sampling and collapse, without the analysis and without maps and measures."""
     from texlab_core.multiresolution.analysis import analyze_steps
     from texlab_core.multiresolution.generators import finish
-    from texlab_core.multiresolution.growth import grow, visible
+    from texlab_core.multiresolution.growth import grow
     from texlab_core.multiresolution.sampling import prepare, sample_steps
 
     analysis = finish(analyze_steps(pixels))
@@ -72,7 +72,7 @@ def grown(pixels: FloatImage, alpha: float, side: int) -> Callable[[], object]:
         sampling = prepare(analysis, table, (side, side), coarsest="shift", literal_levels=0, streams=Streams(0))
         progress = sample_steps(sampling)
         steps = grow(analysis, sampling.grid, sampling.sources, progress, size=(side, side), periodic=False)
-        return visible(finish(steps), (side, side))
+        return finish(steps)
 
     return work
 

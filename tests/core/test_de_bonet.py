@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
@@ -215,6 +216,8 @@ def test_maps_and_curves() -> None:
     sampling = result.details.sampling
     source = result.maps["source"].data
     assert list(result.maps) == ["source", "candidates", "copied"]
+    copies = pickle.loads(pickle.dumps(result.maps))
+    assert all((copies[name].data == result.maps[name].data).all() for name in result.maps)
     assert source.dtype == np.int32
     # In the exemplar's own coordinates, the crop's corner included.
     assert source.reshape(-1, 2).min(0).tolist() == [0, 1]

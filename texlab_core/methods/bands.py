@@ -75,7 +75,7 @@ def synthesize(
     model: Analysis, inputs: Inputs, params: BandsParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Draw every value of every band uniformly from the exemplar's band, and collapse."""
-    from texlab_core.multiresolution.growth import grow, visible
+    from texlab_core.multiresolution.growth import grow
     from texlab_core.multiresolution.quadtree import Grid
 
     grid = Grid.covering(*size, model.depth)
@@ -86,7 +86,7 @@ def synthesize(
     progress = ((level, count) for level in finer for count in _draw(model.grid, level, sources[level], streams))
     periodic = model.border == "periodic"
     image = yield from grow(model, grid, sources, progress, size=size, periodic=periodic)
-    return Output(image=visible(image, size), notes=model.notes)
+    return Output(image=image, notes=model.notes)
 
 
 def _draw(exemplar: Grid, level: int, out: NDArray[np.int32], streams: Streams) -> Generator[int, None, None]:

@@ -222,7 +222,7 @@ def synthesize(
     model: Analysis, inputs: Inputs, params: DeBonetParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Sample level by level, growing the picture on the way (SynthesizePyramid)."""
-    from texlab_core.multiresolution.growth import grow, visible
+    from texlab_core.multiresolution.growth import grow
     from texlab_core.multiresolution.report import report_steps
     from texlab_core.multiresolution.sampling import prepare, sample_steps
 
@@ -249,7 +249,7 @@ def synthesize(
     if params.tileable and sampling.grid.shape(0) != size:
         side = 2**depth
         notes += (f"The output was cropped and does not tile: its sides must be multiples of {side} pixels.",)
-    return (yield from report_steps(sampling, size, visible(image, size), notes))
+    return (yield from report_steps(sampling, size, image, notes))
 
 
 register(

@@ -168,7 +168,7 @@ def analyze_steps(
         if i < depth:
             coarser, band = yield from through(_split(gaussian, rule), (done, total))
         done += 2 * grid.count(i)
-        measured = np.empty((*grid.shape(i), 0 if i == 0 else len(features)), np.float32)
+        measured = np.empty((len(features) if i else 0, *grid.shape(i)), np.float32)
         if i > 0:
             seen = (_luminance(gaussian), _luminance(band)) if luminance_only else (gaussian, band)
             filling = _measure(seen[0], seen[1], measured, kinds, orientations, filter_size, rule)
@@ -266,26 +266,27 @@ def _measure(
     filter_size: int,
     border: Border,
 ) -> Generator[None, None, None]:
-    """Fill ``out`` (h, w, J) in the order of ``feature_list``; eq. 7 where the level is too small."""
+    """Fill ``out`` (J, h, w) in the order of ``feature_list``; eq. 7 where the level is too small."""
     from texlab_core.transforms.oriented import derivatives
 
     channels = gaussian.shape[2]
-    out[..., :channels] = band
-    column = channels
+    for channel in range(channels):
+        out[channel] = band[..., channel]
+    first = channels
     orders: tuple[tuple[FeatureKind, Order], ...] = (("first", 1), ("second", 2))
     for kind, order in orders:
         if kind not in kinds:
             continue
+        last = first + orientations * channels
         if min(gaussian.shape[:2]) < filter_size:
-            out[..., column : column + orientations * channels] = 0
-            column += orientations * channels
-            continue
-        found = derivatives(gaussian, order, orientations, size=filter_size, border=border)
-        yield
-        for response in found:
-            out[..., column : column + channels] = response
-            column += channels
-            yield
+            out[first:last] = 0
+        else:
+            for channel in range(channels):
+                plane = np.ascontiguousarray(gaussian[..., channel])
+                found = derivatives(plane, order, orientations, size=filter_size, border=border)
+                out[first + channel : last : channels] = found
+                yield
+        first = last
 
 
 def _finish(
@@ -294,23 +295,24 @@ def _finish(
     """Normalize and reorder."""
     from texlab_core.kernels.classes import classify_rows
 
-    height, width, columns = measured.shape
-    scale = _scales(measured, normalization)
+    columns, height, width = measured.shape
+    scale = yield from _scales(measured, normalization)
     factor = np.where(np.isfinite(scale), 1 / np.sqrt(scale), 0).astype(np.float32)
     level = Level(
         band=np.empty((height * width, band.shape[2])),
         features=np.empty((height * width, columns), np.float32),
         classes=np.zeros(height * width, np.int32),
         scale=scale,
-        coordinates=grid.coordinates(i),
+        coordinates=np.empty((height * width, 2), np.int32),
     )
-    yield
     row_part, column_part = grid.parts(i)
     for first, last in row_blocks(height, width * max(1, columns)):
         order = row_part[first:last, None] + column_part
         level.band[order] = band[first:last]
+        level.coordinates[order, 0] = np.arange(first, last, dtype=np.int32)[:, None]
+        level.coordinates[order, 1] = np.arange(width, dtype=np.int32)
         # Adding zero turns -0.0 into 0.0: rows that are equal have equal bits.
-        level.features[order] = measured[first:last] * factor + np.float32(0)
+        level.features[order] = np.moveaxis(measured[:, first:last], 0, -1) * factor + np.float32(0)
         yield
     if columns:
         table = np.full(1 << (2 * height * width - 1).bit_length(), -1, np.int32)
@@ -323,19 +325,20 @@ def _finish(
     return level
 
 
-def _scales(measured: NDArray[np.float32], normalization: Normalization) -> NDArray[np.float64]:
+def _scales(
+    measured: NDArray[np.float32], normalization: Normalization
+) -> Generator[None, None, NDArray[np.float64]]:
     """Return Z of eq. 10 for every feature of a level, infinite for the constant ones."""
-    if measured.shape[2] == 0:
-        return np.empty(0)
-    spread = np.ptp(measured, axis=(0, 1)).astype(np.float64)
+    spread, scale = np.empty(len(measured)), np.empty(len(measured))
+    for j, plane in enumerate(measured):
+        spread[j] = np.ptp(plane)
+        if normalization == "sum":
+            scale[j] = np.einsum("yx,yx->", plane, plane, dtype=np.float64)
+        else:
+            scale[j] = spread[j] ** 2 if normalization == "range" else np.var(plane, dtype=np.float64)
+        yield
     constant = spread <= _CONSTANT
-    if normalization == "range":
-        scale = spread**2
-    elif normalization == "sum":
-        scale = np.einsum("yxj,yxj->j", measured, measured, dtype=np.float64)
-    else:
-        scale = np.var(measured, axis=(0, 1), dtype=np.float64)
-        if normalization == "level" and not constant.all():
-            scale = np.full_like(scale, scale[~constant].mean())
+    if normalization == "level" and not constant.all():
+        scale[:] = scale[~constant].mean()
     scale[constant] = np.inf
-    return np.asarray(scale, np.float64)
+    return scale

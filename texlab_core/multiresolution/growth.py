@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import InputError
-from texlab_core.multiresolution.analysis import choose_depth
+from texlab_core.multiresolution.analysis import choose_depth, row_blocks
 from texlab_core.multiresolution.collapse import coarsest, collapse_steps, enlarge
+from texlab_core.multiresolution.generators import through
 from texlab_core.multiresolution.quadtree import Grid
 from texlab_core.steps import Step
 
@@ -44,6 +45,15 @@ def check_size(exemplar: tuple[int, int], smallest: int, size: tuple[int, int]) 
 def visible(image: FloatImage, size: tuple[int, int]) -> FloatImage:
     """Return what was asked for of the finest level, clipped to the legal range: only here, at the very end."""
     return np.clip(image[: size[0], : size[1]], 0, 1)
+
+
+def visible_steps(image: FloatImage, size: tuple[int, int]) -> Generator[None, None, FloatImage]:
+    """Do what :func:`visible` does in parts of a few milliseconds."""
+    out = np.empty((*size, image.shape[2]), np.float32)
+    for first, last in row_blocks(size[0], size[1] * image.shape[2]):
+        np.clip(image[first:last, : size[1]], 0, 1, out=out[first:last])
+        yield
+    return out
 
 
 def analyze_in_steps(
@@ -92,7 +102,7 @@ def grow(
     Returns
     -------
     ndarray
-        The finest level at full precision, (H, W, C) float32.
+        The finest level, cropped and clipped, (H, W, C) float32.
     """
     level = grid.depth
     missing = [grid.count(each) for each in range(level)]
@@ -115,4 +125,5 @@ def grow(
             level, image = level - 1, grown
             done += grid.count(level)
             yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    return image
+    step = Step(done, total, "level 0", preview=preview)
+    return (yield from through(visible_steps(image, size), step))

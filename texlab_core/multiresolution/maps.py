@@ -40,13 +40,17 @@ class LazyMaps(Mapping[str, Map]):
     def __len__(self) -> int:
         return len(self._makers)
 
+    def __reduce__(self) -> tuple[type[dict[str, Map]], tuple[dict[str, Map]]]:
+        # Another process gets the maps themselves.
+        return dict, (dict(self),)
+
 
 def source_map_steps(
     sampling: Sampling, level: int, size: tuple[int, int]
 ) -> Generator[None, None, NDArray[np.int32]]:
     """Return row and column of the source of every pixel of a level, (height, width, 2) int32.
 
-    Coordinates are those of the cropped exemplar at that level.
+    Coordinates are those of the cropped exemplar at that level; at level 0 those of the whole exemplar.
     """
     from texlab_core.kernels.collapse import source_rows
 
@@ -54,6 +58,8 @@ def source_map_steps(
     out = np.empty((height, width, 2), np.int32)
     row_part, column_part = sampling.grid.parts(level)
     places = sampling.analysis.levels[level].coordinates
+    if level == 0:
+        places = places + np.array(sampling.analysis.origin, np.int32)
     for first, last in row_blocks(height, width):
         source_rows(sampling.sources[level], row_part, column_part, places, out, first, last)
         yield

@@ -58,7 +58,6 @@ def report_steps(
         medians.append(1.0 if level == grid.depth else median_candidates(sampling, level))
         yield step
     labels, region_sizes = yield from through(copied_regions_steps(source), step)
-    source += np.array(sampling.analysis.origin, np.int32)
     levels = np.arange(grid.depth, -1, -1)
     maps = LazyMaps(
         {

@@ -85,7 +85,11 @@ def copied_regions_steps(
     for done, (first, last) in enumerate(blocks):
         count_roots(parent, counts, first * width, last * width)
         yield (done + 1 + len(blocks)) / (3 * len(blocks))
-    roots = np.flatnonzero(counts > 1)
+    found = []
+    for first, last in blocks:
+        found.append(first * width + np.flatnonzero(counts[first * width : last * width] > 1))
+        yield 2 / 3
+    roots = np.concatenate(found)
     roots = roots[np.argsort(-counts[roots], kind="stable")]
     rank = np.zeros(height * width, np.int32)
     rank[roots] = np.arange(1, roots.size + 1, dtype=np.int32)
