@@ -16,7 +16,7 @@ from texlab.column_run import ColumnRun, Finished, Progress, with_exemplar
 from texlab.jobs import Request, Slots, Task, Worker
 from texlab.pictures import to_picture
 from texlab.resolve import difference, draft_size
-from texlab.scene import ColumnScene, Picture, Scene
+from texlab.scene import ColumnScene, Mark, Picture, Probe, Scene
 from texlab_core.registry import find_method
 from texlab_core.run import AnalysisCache, Job
 
@@ -63,6 +63,7 @@ class Controller(QObject):
     problem = Signal(str)
     said = Signal(str)
     all_idle = Signal()
+    marks_changed = Signal(object)
 
     def __init__(self, session: Session, themes: ThemeSource, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -73,6 +74,7 @@ class Controller(QObject):
         self._runtimes: dict[int, _Runtime] = {}
         self._prepared: Prepared | None = None
         self._dragging = False
+        self._probe: Probe | None = None
         self._once_workers: set[Worker] = set()
         self._exemplar_worker = Worker("exemplar", parent=self)
         self._exemplar_worker.finished.connect(self._exemplar_prepared)
@@ -102,12 +104,17 @@ class Controller(QObject):
         columns = tuple(
             self._runtimes[column.id].scene for column in self.session.state.columns if column.id in self._runtimes
         )
-        return Scene(self._themes.theme, self.exemplar, columns, self.session.selected_id)
+        return Scene(self._themes.theme, self.exemplar, columns, self.session.selected_id, self._probe)
 
     def column_scene(self, column_id: int) -> ColumnScene | None:
         """Return what one column shows."""
         runtime = self._runtimes.get(column_id)
         return runtime.scene if runtime is not None else None
+
+    @property
+    def slots(self) -> Slots:
+        """The places that everything that computes shares: as many as there are cores."""
+        return self._slots
 
     @property
     def busy(self) -> bool:
@@ -154,6 +161,26 @@ class Controller(QObject):
             runtime = self._runtimes.get(column_id)
             if runtime is not None and runtime.drafted:
                 self.run_column(column_id)
+
+    def point_at(self, column_id: int, row: int, column: int) -> None:
+        """Ask about the pixel under the pointer, unless another one is pinned."""
+        if self._probe is not None and self._probe.pinned:
+            return
+        self._set_probe(Probe(column_id, row, column) if row >= 0 else None)
+
+    def pin(self, column_id: int, row: int, column: int) -> None:
+        """Keep asking about a pixel; the same pixel again lets go of it."""
+        wanted = Probe(column_id, row, column, pinned=True)
+        self._set_probe(None if self._probe == wanted or row < 0 else wanted)
+
+    def _set_probe(self, probe: Probe | None) -> None:
+        if probe != self._probe:
+            self._probe = probe
+            self._refresh.start()
+
+    def show_marks(self, marks: tuple[Mark, ...]) -> None:
+        """Outline places in the exemplar."""
+        self.marks_changed.emit(marks)
 
     def reset_params(self, column_id: int) -> None:
         """Give a column its method's defaults."""

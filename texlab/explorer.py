@@ -36,7 +36,7 @@ from texlab_core.run import MAX_SEED, versions
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock
-    from texlab.scene import Picture, Scene
+    from texlab.scene import Mark, Picture, Scene
     from texlab.settings import Settings
     from texlab.theme import ThemeSource
     from texlab.views.column import ColumnView
@@ -166,6 +166,7 @@ class Explorer(QObject):
         session.selected.connect(lambda _: self._show_session())
         controller.scene_changed.connect(self._show_scene)
         controller.exemplar_ready.connect(self._show_exemplar)
+        controller.marks_changed.connect(self._show_marks)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
@@ -236,6 +237,8 @@ class Explorer(QObject):
         view.stop_wanted.connect(controller.stop_column)
         view.command.connect(self._column_command)
         view.hovered.connect(self._column_hovered)
+        view.hovered.connect(self.controller.point_at)
+        view.pixel_clicked.connect(self.controller.pin)
         view.map_chosen.connect(self.overlays.choose)
 
     # What the user does.
@@ -426,6 +429,12 @@ class Explorer(QObject):
         finished = scene_chosen is not None and scene_chosen.result is not None
         self.window.actions_by_name["export"].setEnabled(finished)
         self.painted.emit()
+
+    def _show_marks(self, marks: tuple[Mark, ...]) -> None:
+        sample = self.session.state.sample
+        crop = sample.crop if sample is not None else None
+        # Methods see the crop; the pane shows the whole source.
+        self.workspace.exemplar.pane.set_marks(marks, (0.0, 0.0) if crop is None else (crop.top, crop.left))
 
     def _source_size(self) -> tuple[int, int]:
         prepared = self.controller.prepared

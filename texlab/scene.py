@@ -74,6 +74,30 @@ class ColumnScene:
     elapsed_s: float = 0.0
 
 
+@dataclass(frozen=True)
+class Probe:
+    """The pixel that the user asks about: under the pointer, or pinned by a click."""
+
+    column_id: int
+    row: int
+    column: int
+    pinned: bool = False
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.
+
+    ``chosen`` is the one that was taken, ``candidate`` another that could have been, ``window`` a neighbourhood.
+    """
+
+    top: float
+    left: float
+    height: float
+    width: float
+    role: Literal["chosen", "candidate", "window"] = "candidate"
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Everything that docks may show."""
@@ -82,6 +106,7 @@ class Scene:
     exemplar: ImageInput | None = None
     columns: tuple[ColumnScene, ...] = ()
     selected_id: int = 0
+    probe: Probe | None = None
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -117,6 +117,7 @@ class ColumnView(QFrame):
         head = QHBoxLayout()
         head.setSpacing(2)
         head.addWidget(self.method_box, 1)
+        self.stop_button.hide()
         for button in (self.run_button, self.stop_button, self.menu_button):
             head.addWidget(button)
         layout = QVBoxLayout(self)
@@ -165,8 +166,8 @@ class ColumnView(QFrame):
             self.line.setProperty("role", role)
             _polish(self.line)
         busy = scene.status in ("running", "waiting")
-        self.stop_button.setEnabled(busy)
-        self.run_button.setEnabled(not busy)
+        self.stop_button.setVisible(busy)
+        self.run_button.setVisible(not busy)
         for name in ("export", "use"):
             self.actions_by_name[name].setEnabled(scene.result is not None)
         self.actions_by_name["copy"].setEnabled(scene.picture is not None)

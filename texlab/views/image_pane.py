@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QContextMenuEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.scene import Picture
+    from texlab.scene import Mark, Picture
     from texlab.theme import Theme
 
 
@@ -81,6 +81,44 @@ class ViewLink:
             pane.show_rect(QRectF(centre - QPointF(size.width() / 2, size.height() / 2), size))
 
 
+_MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
+
+
+class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """Outlines of places, painted with lines of the same width at any zoom."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: dict[str, list[QRectF]] = {}
+        self._bounds = QRectF()
+        self.setZValue(20)
+
+    def show_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float]) -> None:
+        """Outline these places."""
+        self.prepareGeometryChange()
+        self._lines = {role: [] for role in _MARK_COLOURS}
+        self._bounds = QRectF()
+        for mark in marks:
+            place = QRectF(mark.left + offset[1], mark.top + offset[0], mark.width, mark.height)
+            self._lines[mark.role].append(place)
+            self._bounds = self._bounds.united(place)
+        self.update()
+
+    def boundingRect(self) -> QRectF:
+        """Return what the outlines cover."""
+        return self._bounds.adjusted(-1, -1, 1, 1)
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        """Paint a dark line under a bright one: seen on any picture."""
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for role, colour in _MARK_COLOURS.items():
+            places = self._lines.get(role, [])
+            if places:
+                for pen_colour, width in (("#000000", 3), (colour, 2 if role == "chosen" else 1)):
+                    painter.setPen(pg.mkPen(pen_colour, width=width))
+                    painter.drawRects(places)
+
+
 class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
     """Shows an (H, W, 3) uint8 picture with nearest-neighbour enlargement.
 
@@ -107,6 +145,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.view.addItem(self.item)
         self._copies: list[Any] = []
         self._overlay: Any = None
+        self._marks: MarksItem | None = None
         self.setMouseTracking(True)
         self.setMinimumSize(60, 60)
         self.view.sigRangeChangedManually.connect(self._moved)
@@ -176,6 +215,15 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
             self.view.addItem(self._overlay)
         self._overlay.setOpacity(opacity)
         self._overlay.setImage(picture, autoLevels=False, levels=None)
+
+    def set_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Outline places of the picture; ``offset`` (row, column) is added to them."""
+        if not marks and self._marks is None:
+            return
+        if self._marks is None:
+            self._marks = MarksItem()
+            self.view.addItem(self._marks, ignoreBounds=True)
+        self._marks.show_marks(marks, offset)
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
