@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.pictures import to_picture
 from texlab.scene import Frame, Picture
+from texlab_core.registry import find_method
 from texlab_core.run import Job, run
 
 if TYPE_CHECKING:
@@ -58,6 +59,29 @@ class Finished:
     picture: Picture
     frames: tuple[Frame, ...]
     draft: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Drafted:
+    """A quick picture, made while a control is dragged; no result."""
+
+    picture: Picture
+    image: FloatImage
+
+
+@dataclass(frozen=True)
+class DraftRun:
+    """A request for a worker: the method's own quick picture of a job."""
+
+    make_job: Callable[[], Job]
+
+    def __call__(self, task: TaskLike) -> Drafted:
+        """Make the picture."""
+        job = self.make_job()
+        make = find_method(job.method).draft
+        assert make is not None
+        image = make(job.inputs, job.params, job.size, job.seed)
+        return Drafted(to_picture(image), image)
 
 
 @dataclass

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from texlab.column_run import ColumnRun, Finished, Progress, with_exemplar
+from texlab.column_run import ColumnRun, Drafted, DraftRun, Finished, Progress, with_exemplar
 from texlab.jobs import Request, Slots, Task, Worker
 from texlab.pictures import to_picture
 from texlab.resolve import difference, draft_size
@@ -304,19 +304,20 @@ class Controller(QObject):
         column = self._column(column_id)
         state = self.session.state
         exemplar = self._prepared.exemplar
+        method = find_method(column.method)
         size = draft_size(state.size, runtime.seconds) if draft else None
         runtime.drafted = size is not None
+        own_draft = runtime.drafted and method.draft is not None
 
         def make_job() -> Job:
             return Job(
                 method=column.method,
                 inputs=with_exemplar(exemplar, column.inputs),
                 params=column.params,
-                size=size or state.size,
+                size=state.size if own_draft or size is None else size,
                 seed=state.seed,
             )
 
-        method = find_method(column.method)
         self._set(
             column_id,
             method=method.id,
@@ -331,7 +332,10 @@ class Controller(QObject):
             draft=size is not None,
             elapsed_s=0.0,
         )
-        runtime.worker.submit(ColumnRun(make_job, self._cache, draft=size is not None))
+        if own_draft:
+            runtime.worker.submit(DraftRun(make_job))
+        else:
+            runtime.worker.submit(ColumnRun(make_job, self._cache, draft=runtime.drafted))
 
     # The workers report.
 
@@ -357,8 +361,11 @@ class Controller(QObject):
             changes |= {"picture": report.picture, "image": report.image}
         self._set(column_id, **changes)
 
-    def _run_finished(self, column_id: int, end: Finished) -> None:
+    def _run_finished(self, column_id: int, end: Finished | Drafted) -> None:
         runtime = self._runtimes[column_id]
+        if isinstance(end, Drafted):
+            self._set(column_id, status="finished", message="", picture=end.picture, image=end.image, draft=True)
+            return
         if not end.draft:
             runtime.seconds = end.result.elapsed_s
         changes: dict[str, Any] = {

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from texlab_core.errors import ParamError
-from texlab_core.steps import Output, Step
+from texlab_core.steps import FloatImage, Output, Step
 
 if TYPE_CHECKING:
     from texlab_core.params import Params
@@ -60,6 +60,9 @@ class Method:
         The named inputs.
     check
         ``check(inputs, params, size)`` raises ``InputError`` for combinations that cannot work.
+    draft
+        ``draft(inputs, params, size, seed)`` returns within about 100 ms a picture, possibly smaller than
+        ``size``, that shows what the parameters do; no result, and none to keep. None where smaller jobs serve.
     order
         Place in lists and in the first columns of the window.
     random
@@ -76,6 +79,7 @@ class Method:
     fails_on: tuple[str, ...] = ()
     inputs: tuple[InputSpec, ...] = (EXEMPLAR,)
     check: Callable[..., None] | None = None
+    draft: Callable[..., FloatImage] | None = None
     order: int = 100
     random: bool = True
 
