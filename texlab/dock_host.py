@@ -42,7 +42,8 @@ class DockHost(QObject):
         self._update()
 
     def close(self) -> None:
-        """Stop and join the thread."""
+        """Stop and join the thread, and what the dock started itself."""
+        self.dock.shut_down()
         if self._worker is not None:
             self._worker.close()
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -24,23 +25,28 @@ PROGRESS_INTERVAL_S = 1 / 60
 
 
 class Slots:
-    """As many places as there are cores; work beyond that waits for its turn."""
+    """As many places as there are cores; work beyond that waits for its turn, first come, first served."""
 
     def __init__(self, count: int) -> None:
         self._free = count
+        self._waiting: deque[object] = deque()
         self._changed = threading.Condition()
 
     def acquire(self, should_stop: Callable[[], bool]) -> bool:
         """Wait for a place; False when ``should_stop`` says so first."""
+        ticket = object()
         with self._changed:
-            while self._free == 0:
-                if should_stop():
-                    return False
-                self._changed.wait()
-            if should_stop():
+            self._waiting.append(ticket)
+            try:
+                while not should_stop():
+                    if self._free > 0 and self._waiting[0] is ticket:
+                        self._free -= 1
+                        return True
+                    self._changed.wait()
                 return False
-            self._free -= 1
-            return True
+            finally:
+                self._waiting.remove(ticket)
+                self._changed.notify_all()
 
     def release(self) -> None:
         """Give the place back."""

@@ -48,3 +48,6 @@ class Dock(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
+
+    def shut_down(self) -> None:
+        """Stop and join what the dock started itself; the window is about to go."""

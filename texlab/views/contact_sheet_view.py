@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 SMALLEST, USUAL, LARGEST = 48, 112, 384
 _GAP = 10
-_NARROWEST = 76
+NARROWEST = 76
 
 
 class ContactSheetView(QScrollArea):
@@ -78,6 +79,26 @@ class ContactSheetView(QScrollArea):
         """Show the cells that have finished."""
         self.canvas.show_cells(cells)
 
+    def fitting_side(self, count: int, columns: int | None, largest: int) -> int:
+        """Return a size for square cells: all are in sight if that is possible, else the columns of a grid.
+
+        Parameters
+        ----------
+        count, columns
+            Number of cells, and of cells in a row; None for a series.
+        largest
+            Size beyond which the pictures would be enlarged.
+        """
+        width = self.width() - self.verticalScrollBar().sizeHint().width()
+        caption = 4 + 3 * self.canvas.fontMetrics().lineSpacing()
+        for side in range(min(largest, LARGEST), USUAL, -4):
+            across = columns or max(1, (width - _GAP) // (side + _GAP))
+            rows = -(-count // across)
+            is_wide = _GAP + across * (side + _GAP) > width
+            if not is_wide and _GAP + rows * (side + caption + _GAP) <= self.height():
+                return side
+        return USUAL if columns is None else min(max((width - _GAP) // columns - _GAP, NARROWEST), USUAL)
+
     def set_side(self, side: int) -> None:
         """Show the cells at another size: the longest side of a picture in pixels."""
         self.canvas.set_side(side)
@@ -123,7 +144,8 @@ class _Canvas(QWidget):
         self.current = 0
         self._side = USUAL
         self._columns = 1
-        self._lines = 1
+        self._tops = [_GAP]
+        self._lines: list[int] = []
         self._over: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
@@ -145,49 +167,54 @@ class _Canvas(QWidget):
         return QSize(max(1, round(width * scale)), max(1, round(height * scale)))
 
     @property
-    def _cell_size(self) -> QSize:
-        picture = self.picture_size
-        height = picture.height() + 4 + self._lines * self.fontMetrics().lineSpacing()
-        return QSize(max(picture.width(), _NARROWEST), height)
+    def _cell_width(self) -> int:
+        return max(self.picture_size.width(), NARROWEST)
 
     def rect_of(self, index: int) -> QRect:
         """Return the rectangle of a cell."""
-        cell = self._cell_size
         row, column = divmod(index, self._columns)
-        x = _GAP + column * (cell.width() + _GAP)
-        y = _GAP + row * (cell.height() + _GAP)
-        return QRect(QPoint(x, y), cell)
+        x = _GAP + column * (self._cell_width + _GAP)
+        return QRect(x, self._tops[row], self._cell_width, self._tops[row + 1] - _GAP - self._tops[row])
 
     def index_at(self, place: QPoint) -> int | None:
         """Return the cell at a place."""
-        cell = self._cell_size
-        column = (place.x() - _GAP // 2) // (cell.width() + _GAP)
-        row = (place.y() - _GAP // 2) // (cell.height() + _GAP)
+        half = _GAP // 2
+        column = (place.x() - half) // (self._cell_width + _GAP)
+        row = bisect.bisect_right(self._tops, place.y() + half) - 1
         index = row * self._columns + column
         inside = 0 <= column < self._columns and row >= 0
         return index if inside and index < len(self.settings) else None
 
     def relayout(self) -> None:
-        """Place the cells anew."""
+        """Place the cells anew; a row is as high as its longest caption."""
         viewport = self._view.viewport().size()
-        width = max(self.picture_size.width(), _NARROWEST)
-        self._lines = self._caption_lines(width)
+        width = self._cell_width
         fitting = max(1, (viewport.width() - _GAP) // (width + _GAP))
         self._columns = self.fixed_columns or min(fitting, max(len(self.settings), 1))
-        rows = -(-len(self.settings) // self._columns)
-        cell = self._cell_size
-        wanted = QSize(_GAP + self._columns * (cell.width() + _GAP), _GAP + rows * (cell.height() + _GAP))
-        if not self.settings:
-            wanted = QSize(0, 0)
+        line, picture = self.fontMetrics().lineSpacing(), self.picture_size.height()
+        self._tops, self._lines = [_GAP], []
+        for first in range(0, len(self.settings), self._columns):
+            self._lines.append(self._caption_lines(first))
+            self._tops.append(self._tops[-1] + picture + 4 + self._lines[-1] * line + _GAP)
+        wanted = QSize(_GAP + self._columns * (width + _GAP), self._tops[-1]) if self.settings else QSize(0, 0)
         # As large as the view where that is larger, but never so large that a scroll bar comes for nothing.
         self.resize(wanted.expandedTo(viewport))
         self.update()
 
-    def _caption_lines(self, width: int) -> int:
+    def _caption_lines(self, first: int) -> int:
+        """Return how many lines the captions of the row that starts with this cell need."""
+        metrics, width = self.fontMetrics(), self._cell_width
+        row = range(first, min(first + self._columns, len(self.settings)))
+        count = max(len(packed(self.settings[index], width, metrics)) for index in row)
+        found = [len(packed(self.cells[each].cell.evidence, width, metrics)) for each in row if each in self.cells]
+        return count + max(found, default=self._evidence_lines)
+
+    @property
+    def _evidence_lines(self) -> int:
+        """Lines of evidence below a cell that has not finished: as many as below the others."""
         metrics = self.fontMetrics()
-        count = max((len(packed(text, width, metrics)) for text in self.settings), default=1)
-        found = [len(packed(each.cell.evidence, width, metrics)) for each in self.cells.values()]
-        return count + max(found, default=0)
+        some = list(self.cells.values())[:20]
+        return max((len(packed(each.cell.evidence, self._cell_width, metrics)) for each in some), default=0)
 
     def set_side(self, side: int) -> None:
         """Show the cells at another size, keeping the one in the middle in sight."""
@@ -206,7 +233,8 @@ class _Canvas(QWidget):
             return
         for index in fresh:
             self.pixmaps.pop(index, None)
-        if self._caption_lines(max(self.picture_size.width(), _NARROWEST)) != self._lines:
+        rows = range(0, len(self.settings), self._columns)
+        if [self._caption_lines(first) for first in rows] != self._lines:
             self.relayout()
         for index in fresh:
             self.update(self.rect_of(index).adjusted(-4, -4, 4, 4))
@@ -221,9 +249,8 @@ class _Canvas(QWidget):
             painter.setPen(QColor(self.theme.muted))
             area = self.rect().adjusted(20, 0, -20, 0)
             painter.drawText(area, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
-        cell = self._cell_size
-        first = max(0, (event.rect().top() - _GAP) // (cell.height() + _GAP)) * self._columns
-        last = (event.rect().bottom() // (cell.height() + _GAP) + 1) * self._columns
+        first = max(0, bisect.bisect_right(self._tops, event.rect().top()) - 1) * self._columns
+        last = bisect.bisect_right(self._tops, event.rect().bottom() + _GAP) * self._columns
         for index in range(first, min(last, len(self.settings))):
             if self.rect_of(index).adjusted(-4, -4, 4, 4).intersects(event.rect()):
                 self._paint_cell(painter, index)
@@ -275,7 +302,7 @@ class _Canvas(QWidget):
         small.setPointSizeF(max(6.0, usual.pointSizeF() * 0.85))
         painter.setFont(small)
         painter.setPen(QColor(self.theme.error))
-        flags = Qt.TextFlag.TextWrapAnywhere if box.width() < _NARROWEST else Qt.TextFlag.TextWordWrap
+        flags = Qt.TextFlag.TextWrapAnywhere if box.width() < NARROWEST else Qt.TextFlag.TextWordWrap
         painter.save()
         painter.setClipRect(box)
         painter.drawText(box.adjusted(4, 3, -4, -3), flags, sentence)
@@ -407,12 +434,18 @@ class _Canvas(QWidget):
 
 
 def packed(text: str, width: int, metrics: QFontMetrics) -> list[str]:
-    """Break a text at its commas into lines that fit ``width`` pixels; one part that is wider stands alone."""
+    """Break a text at its commas into lines that fit ``width`` pixels; what is still too wide, at its spaces."""
     lines: list[str] = []
     for part in text.split(", ") if text else []:
         joined = f"{lines[-1]}, {part}" if lines else part
         if lines and metrics.horizontalAdvance(joined) <= width:
             lines[-1] = joined
-        else:
-            lines.append(part)
+            continue
+        words = part.split()
+        lines.append(words[0])
+        for word in words[1:]:
+            if metrics.horizontalAdvance(f"{lines[-1]} {word}") <= width:
+                lines[-1] += f" {word}"
+            else:
+                lines.append(word)
     return lines

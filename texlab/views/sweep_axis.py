@@ -11,6 +11,7 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QGridLayout,
+    QHBoxLayout,
     QLabel,
     QLineEdit,
     QSizePolicy,
@@ -123,14 +124,17 @@ class AxisEditor(QWidget):
         values.setContentsMargins(0, 0, 0, 0)
         for widget in (self._range, self.listed, self._choices):
             values.addWidget(widget)
-        layout = QGridLayout(self)
+        head = QHBoxLayout()
+        head.setContentsMargins(0, 0, 0, 0)
+        head.addWidget(label)
+        head.addWidget(self.knob, 1)
+        head.addWidget(self.spacing)
+        layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(4)
-        layout.addWidget(label, 0, 0)
-        layout.addWidget(self.knob, 0, 1)
-        layout.addWidget(self.spacing, 0, 2)
-        layout.addLayout(values, 1, 0, 1, 3)
-        layout.setColumnStretch(1, 1)
+        for each in (head, layout):
+            each.setSpacing(4)
+        layout.addLayout(head)
+        layout.addLayout(values)
 
     def _name_controls(self) -> None:
         for control, name, label, tip in (
