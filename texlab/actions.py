@@ -40,6 +40,8 @@ COMMANDS = (
     Command("&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column"),
     Command("&Column", "left", "Move &left", "Ctrl+Shift+Left", "Move the chosen column to the left"),
     Command("&Column", "right", "Move &right", "Ctrl+Shift+Right", "Move the chosen column to the right"),
+    Command("&Column", "four", "The &four methods", "", "Heeger-Bergen, De Bonet, MSG, Efros-Leung side by side"),
+    Command("&Column", "spectra", "Compare s&pectra", "", "Uncoded, MSG, CAR and AC-H with one phase (Fig. 8)"),
     Command("&Column", "previous", "&Previous column", "Ctrl+PgUp", "Choose the column to the left"),
     Command("&Column", "next", "&Next column", "Ctrl+PgDown", "Choose the column to the right"),
     Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),

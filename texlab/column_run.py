@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.pictures import to_picture
 from texlab.scene import Frame, Picture
+from texlab_core.inputs import ImageInput
 from texlab_core.registry import find_method
 from texlab_core.run import Job, run
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab_core.inputs import ImageInput
     from texlab_core.run import AnalysisCache
     from texlab_core.steps import FloatImage, Result, Step
 
@@ -59,6 +59,7 @@ class Finished:
     picture: Picture
     frames: tuple[Frame, ...]
     draft: bool
+    metrics: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +119,22 @@ class ColumnRun:
                 )
 
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
-        return Finished(result, to_picture(result.image), tuple(self.frames), self.draft)
+        metrics |= {} if self.draft else spectral_distances(result)
+        return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
+
+
+def spectral_distances(result: Result) -> dict[str, float]:
+    """Return how far the result's spectrum is from the exemplar's: dB, and share of the power moved."""
+    from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
+
+    exemplar = result.job.inputs.get("exemplar")
+    if not isinstance(exemplar, ImageInput) or exemplar.channels != result.image.shape[2]:
+        return {}
+    first, second = power_spectrum(exemplar.pixels), power_spectrum(result.image)
+    return {
+        "spectral-distance": log_spectral_distance(first, second),
+        "spectral-variation": total_variation(first, second),
+    }
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

@@ -377,6 +377,7 @@ class Controller(QObject):
             "draft": end.draft,
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,
+            "metrics": end.metrics,
         }
         if not end.draft:
             changes["frames"] = end.frames

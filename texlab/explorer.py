@@ -29,6 +29,7 @@ from texlab.views.help import HelpWindow
 from texlab.views.palette import CommandPalette
 from texlab.views.workspace import Workspace
 from texlab.window import source_of
+from texlab_core.comparison import FIG_8, FIRST_SIGHT
 from texlab_core.gallery import gallery
 from texlab_core.inputs import Crop
 from texlab_core.registry import methods
@@ -204,6 +205,8 @@ class Explorer(QObject):
             "remove": lambda: session.remove_column(chosen()),
             "left": lambda: session.move_column(chosen(), -1),
             "right": lambda: session.move_column(chosen(), 1),
+            "four": lambda: self.lay_out(FIRST_SIGHT, "the four methods"),
+            "spectra": lambda: self.lay_out(FIG_8, "compare spectra"),
             "previous": lambda: self._step_column(-1),
             "next": lambda: self._step_column(1),
             "run": lambda: controller.run_column(chosen()),
@@ -275,6 +278,10 @@ class Explorer(QObject):
         if places:
             here = places.index(self.session.selected_id)
             self._select(places[(here + by) % len(places)])
+
+    def lay_out(self, wanted: tuple[str, ...], text: str) -> None:
+        """Show these methods with their defaults, all with the session's seed: the spectral ones share a phase."""
+        self.session.set_columns([(name, methods()[name].params()) for name in wanted], text)
 
     def choose_new_column(self) -> None:
         """Offer the methods, then add the chosen one."""
@@ -513,11 +520,7 @@ def make_thumbnails(names: list[str], task: Task) -> tuple[tuple[str, Picture], 
 def first_columns() -> list[tuple[str, Any]]:
     """Return the columns of a first start."""
     known = methods()
-    wanted = [name for name in ("heeger-bergen", "de-bonet", "msg", "efros-leung") if name in known]
-    columns = [(name, known[name].params()) for name in wanted or list(known)[:1]]
-    if len(columns) == 1 and columns[0][0] == "heeger-bergen":
-        columns.append(("heeger-bergen", known["heeger-bergen"].params.from_json({"iterations": 1})))
-    return columns
+    return [(name, known[name].params()) for name in FIRST_SIGHT]
 
 
 def _without_argument(call: Any) -> Any:

@@ -241,6 +241,12 @@ class Session(QObject):
         columns = tuple(column for column in self.state.columns if column.id != column_id)
         self.apply(dataclasses.replace(self.state, columns=columns), "remove column")
 
+    def set_columns(self, columns: list[tuple[str, Params]], text: str) -> None:
+        """Put other columns in the place of all."""
+        state = self.state
+        made = tuple(Column(state.next_id + place, name, params) for place, (name, params) in enumerate(columns))
+        self.apply(dataclasses.replace(state, columns=made, next_id=state.next_id + len(made)), text)
+
     def move_column(self, column_id: int, by: int) -> None:
         """Move a column by so many places to the right (left when negative)."""
         columns = list(self.state.columns)

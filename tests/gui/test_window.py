@@ -432,3 +432,15 @@ def test_efros_leung_is_drafted_while_a_slider_is_dragged(
     assert not scene(column_id).draft
     column = explorer.session.state.columns[0]
     assert np.array_equal(result_image(explorer, column_id), expected(str(texture), column, size=(64, 64)))
+
+
+def test_spectra_are_compared_in_one_click(qtbot: Any, explorer: Explorer) -> None:
+    before = ids(explorer)
+    explorer.window.actions_by_name["spectra"].trigger()
+    wait_idle(qtbot, explorer)
+    assert [column.method for column in explorer.session.state.columns] == ["uncoded", "msg", "car", "ac-h"]
+    lines = [explorer.workspace.columns[each].line.text() for each in ids(explorer)]
+    assert all("numbers" in line and " dB" in line for line in lines), lines
+    explorer.session.undo()
+    assert ids(explorer) == before
+    wait_idle(qtbot, explorer)

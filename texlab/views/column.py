@@ -235,23 +235,27 @@ def status_line(scene: ColumnScene) -> str:
     if scene.status == "finished" and scene.result is not None:
         height, width = scene.result.image.shape[:2]
         parts.append(f"{width} x {height}, {format_seconds(scene.elapsed_s)}")
-        parts += [format_measure(name, value) for name, value in scene.result.measures.items()][:3]
+        numbers = {**scene.result.measures, **scene.metrics}
+        parts += [format_measure(name, numbers[name]) for name in _MEASURES if name in numbers][:MOST_NUMBERS]
     return " · ".join(parts)
 
 
+MOST_NUMBERS = 4
+# In the order in which they are shown, as far as a result has them.
 _MEASURES = {
-    "w1-pixels": ("W1 pixels", "{:.3f}"),
-    "w1-bands": ("W1 bands", "{:.3f}"),
+    "parameters": ("numbers", "{:.0f}"),
     "copied-share": ("copied", "{:.0%}"),
     "median-candidates": ("candidates", "{:.0f}"),
-    "largest-copy": ("largest copy", "{:.0f} px"),
-    "parameters": ("numbers", "{:.0f}"),
+    "w1-bands": ("W1 bands", "{:.3f}"),
+    "largest-pole": ("largest pole", "{:.3f}"),
+    "spectral-distance": ("spectrum", "{:.1f} dB"),
+    "spectral-variation": ("power moved", "{:.0%}"),
 }
 
 
 def format_measure(name: str, value: float) -> str:
     """Return a measure as it is shown under a column."""
-    title, shape = _MEASURES.get(name, (name.replace("-", " "), "{:.3g}"))
+    title, shape = _MEASURES[name]
     return f"{title} {shape.format(value)}"
 
 
