@@ -23,6 +23,7 @@ PASSES = 3
 _BITS = 11
 _MASK = np.uint32(DIGITS - 1)
 _SIGN = np.uint32(0x80000000)
+_GLANCE = 64
 _LOW = np.uint64(0xFFFFFFFF)
 _SHIFT = np.uint64(32)
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
@@ -52,10 +53,16 @@ def _ordered(bits: np.uint32) -> np.uint32:
 
 
 @njit
+def _value(key: np.uint32) -> np.float32:
+    """Return the float32 that :func:`_ordered` made a key of."""
+    return np.uint32(key ^ np.uint32(np.uint32(np.int32(~key) >> np.int32(31)) | _SIGN)).view(np.float32)
+
+
+@njit
 def count(bits: NDArray[np.uint32], start: int, stop: int, counts: NDArray[np.int64]) -> None:
     """Add the digits of a piece to ``counts``, (3, 2048)."""
-    for index in range(start, stop):
-        key = _ordered(bits[index])
+    for value in bits[start:stop]:
+        key = _ordered(value)
         counts[0, key & _MASK] += 1
         counts[1, (key >> np.uint32(_BITS)) & _MASK] += 1
         counts[2, key >> np.uint32(2 * _BITS)] += 1
@@ -96,8 +103,7 @@ def scatter_next(
     """Send the items of a piece to the places of their digit ``number``."""
     shift = np.uint64(32 + _BITS * number)
     mask = np.uint64(DIGITS - 1)
-    for index in range(start, stop):
-        item = source[index]
+    for item in source[start:stop]:
         digit = (item >> shift) & mask
         items[places[number, digit]] = item
         places[number, digit] += 1
@@ -110,14 +116,24 @@ def shuffle_ties(items: NDArray[np.uint64], start: int, stop: int, run: int, key
     ``run`` is where the run of the item before ``start`` begins; returns the same for the item before ``stop``. An
     item's draw depends on the key and its index only.
     """
-    for place in range(max(start, 1), stop):
-        item = items[place]
-        if item >> _SHIFT != items[place - 1] >> _SHIFT:
-            run = place
+    for first in range(max(start, 1), stop, _GLANCE):
+        last = min(first + _GLANCE, stop)
+        # Ties are rare: a loop without branches, over two views of its own, looks for any first.
+        after, before = items[first:last], items[first - 1 : last - 1]
+        ties = 0
+        for place in range(len(after)):
+            ties += (after[place] >> _SHIFT) == (before[place] >> _SHIFT)
+        if ties == 0:
+            run = last - 1
             continue
-        other = run + np.int64(hash_index(key, item & _LOW) % np.uint64(place - run + 1))
-        items[place] = items[other]
-        items[other] = item
+        for place in range(first, last):
+            item = items[place]
+            if item >> _SHIFT != items[place - 1] >> _SHIFT:
+                run = place
+                continue
+            other = run + np.int64(hash_index(key, item & _LOW) % np.uint64(place - run + 1))
+            items[place] = items[other]
+            items[other] = item
     return run
 
 
@@ -133,7 +149,7 @@ def assign(
     many, size = len(values), len(target)
     ratio = size / many
     for rank in range(start, stop):
-        index = items[rank] & _LOW
+        item = items[rank]
         if size == many:
             wanted = target[rank]
         else:
@@ -142,8 +158,9 @@ def assign(
             above = min(below + 1, size - 1)
             weight = place - below
             wanted = np.float32(target[below] * (1.0 - weight) + target[above] * weight)
-        moved += abs(np.float64(values[index]) - np.float64(wanted))
-        values[index] = wanted
+        # The old value comes from the item: values are only written, since they are far apart in memory.
+        moved += abs(np.float64(_value(np.uint32(item >> _SHIFT))) - np.float64(wanted))
+        values[item & _LOW] = wanted
     return moved
 
 
