@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
+from PySide6.QtWidgets import QAbstractItemView, QFrame, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
 
 from texlab.plots import Plot, number
 
@@ -19,14 +19,15 @@ if TYPE_CHECKING:
     from texlab.comparison import Comparison
     from texlab.plots import Line, Role
     from texlab.theme import Theme
+    from texlab_core.stats.moments import Moments
 
-COLUMNS = ("mean", "sd", "skew", "kurt", "W1", "W1 / sd")
+ROWS = ("mean", "sd", "skewness", "kurtosis", "W1", "W1 / sd")
 MEANINGS = (
     "Mean",
     "Standard deviation",
     "Skewness: 0 when symmetric",
     "Kurtosis: 3 for a normal distribution, more for sparse values",
-    "Wasserstein-1 distance from the exemplar, in the values' unit",
+    "Wasserstein-1 distance of the result from the exemplar, in the values' unit",
     "Wasserstein-1 distance in standard deviations of the exemplar",
 )
 
@@ -34,8 +35,10 @@ MEANINGS = (
 class HistogramPlot(Plot):
     """Exemplar (solid, filled) and result (dashed) over the same bins."""
 
-    def show_comparison(self, shown: Comparison, *, log: bool = False, cumulated: bool = False) -> None:
-        """Draw the two distributions."""
+    def show_comparison(
+        self, shown: Comparison, *, log: bool = False, cumulated: bool = False, named: bool = True
+    ) -> None:
+        """Draw the two distributions; ``named`` writes at the axes what they are."""
         self.clear()
         widths = np.diff(shown.edges)
         # Shares per bin: their height does not depend on the unit of the axis.
@@ -52,10 +55,10 @@ class HistogramPlot(Plot):
         for values, (role, line) in zip(series, styles, strict=False):
             filled = role == "exemplar" and not cumulated
             self.curve(shown.edges, values, role, line=line, steps=not cumulated, filled=filled, floor=floor)
-        self.set_log(y=log)
-        self.set_labels(shown.title, "share below" if cumulated else "share per bin")
+        self.set_log(log)
+        self.set_labels(shown.title, ("share below" if cumulated else "share per bin") if named else "")
         span = (float(shown.edges[0]), float(shown.edges[-1]))
-        self.fit(x=span, y=(floor, max(top, floor + 0.1) + 0.05 * abs(top - floor)))
+        self.fit(x=span, y=(floor, top + 0.06 * max(top - floor, 1e-6)))
 
     @staticmethod
     def describe(shown: Comparison, x: float) -> str:
@@ -70,84 +73,84 @@ class HistogramPlot(Plot):
 
 
 class NumbersTable(QTableWidget):
-    """Moments of exemplar and result and the distance between them."""
+    """Moments of exemplar and result and the distance between them: a column for each, low and narrow."""
 
     def __init__(self, name: str, parent: QWidget | None = None) -> None:
-        super().__init__(0, len(COLUMNS), parent)
+        super().__init__(len(ROWS), 0, parent)
         self.setObjectName(name)
         self.setAccessibleName("Numbers of the distributions")
         self.setToolTip("Moments of exemplar and result, and the distance between them")
-        for column, meaning in enumerate(MEANINGS):
-            heading = QTableWidgetItem(COLUMNS[column])
+        for row, meaning in enumerate(MEANINGS):
+            heading = QTableWidgetItem(ROWS[row])
             heading.setToolTip(meaning)
-            self.setHorizontalHeaderItem(column, heading)
+            self.setVerticalHeaderItem(row, heading)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ContiguousSelection)
+        self.setFrameShape(QFrame.Shape.NoFrame)
         self.setShowGrid(False)
         self.setWordWrap(False)
         self.setTabKeyNavigation(False)
         self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.horizontalHeader().setHighlightSections(False)
-        self.horizontalHeader().setMinimumSectionSize(30)
+        self.horizontalHeader().setMinimumSectionSize(56)
         self.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
-        self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 6)
+        self.verticalHeader().setMinimumSectionSize(10)
+        self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 4)
         self.verticalHeader().setHighlightSections(False)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
         self._theme: Theme | None = None
 
     def show_comparisons(self, shown: Sequence[Comparison]) -> None:
-        """Fill in two rows for each comparison; with several, each is named."""
-        rows: list[tuple[str, list[str], bool]] = []
+        """Fill in a column for every distribution; with several comparisons, each is named."""
+        columns: list[tuple[str, list[str], bool]] = []
         for each in shown:
-            name = f"{each.title}, " if len(shown) > 1 else ""
-            first, second = each.exemplar_moments, each.result_moments
-            numbers = (first.mean, first.sd, first.skewness, first.kurtosis)
-            rows.append((f"{name}exemplar", [number(value) for value in numbers] + ["", ""], False))
-            if second is not None and each.distance is not None:
-                numbers = (second.mean, second.sd, second.skewness, second.kurtosis)
+            name = f"{each.title}\n" if len(shown) > 1 else ""
+            columns.append((f"{name}exemplar", _moment_texts(each.exemplar_moments), False))
+            if each.result_moments is not None and each.distance is not None:
                 relative = each.relative_distance
                 distances = [number(each.distance), "" if relative is None else number(relative)]
-                rows.append((f"{name}result", [number(value) for value in numbers] + distances, True))
-        self.setRowCount(len(rows))
-        self.setVerticalHeaderLabels([name for name, _, _ in rows])
-        for row, (_, texts, is_result) in enumerate(rows):
-            for column, text in enumerate(texts):
-                item = QTableWidgetItem(text)
+                columns.append((f"{name}result", _moment_texts(each.result_moments) + distances, True))
+        self.setColumnCount(len(columns))
+        for column, (name, texts, is_result) in enumerate(columns):
+            heading = QTableWidgetItem(name)
+            heading.setData(Qt.ItemDataRole.UserRole, is_result)
+            self.setHorizontalHeaderItem(column, heading)
+            for row in range(len(ROWS)):
+                item = QTableWidgetItem(texts[row] if row < len(texts) else "")
                 item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-                item.setData(Qt.ItemDataRole.UserRole, is_result)
                 self.setItem(row, column, item)
-        self._paint_rows()
+        self._paint_headings()
+        self.resizeColumnsToContents()
         self.updateGeometry()
 
-    def cell(self, row: int, column: str) -> str:
-        """Return the text of a cell by the name of its column."""
-        item = self.item(row, COLUMNS.index(column))
+    def cell(self, row: str, column: int) -> str:
+        """Return the text of a cell by the name of its row."""
+        item = self.item(ROWS.index(row), column)
         return item.text() if item is not None else ""
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
         self._theme = theme
-        self._paint_rows()
+        self._paint_headings()
 
     def sizeHint(self) -> QSize:
         """Ask for the room that all rows and columns need."""
-        header = self.horizontalHeader()
-        width = self.verticalHeader().sizeHint().width() + sum(
-            header.sectionSizeHint(column) for column in range(self.columnCount())
-        )
-        width = max(width, self.verticalHeader().sizeHint().width() + header.length())
-        height = header.sizeHint().height() + self.verticalHeader().length()
-        return QSize(width + 6, height + 6)
+        across, down = self.horizontalHeader(), self.verticalHeader()
+        # Room for the scroll bar that a low dock needs.
+        width = down.sizeHint().width() + across.length() + self.verticalScrollBar().sizeHint().width()
+        return QSize(width, across.sizeHint().height() + down.length() + 4)
 
     def minimumSizeHint(self) -> QSize:
         """Accept little room: the table scrolls."""
-        return QSize(120, 50)
+        return QSize(min(self.sizeHint().width(), 210), 50)
 
-    def _paint_rows(self) -> None:
-        if self._theme is None:
-            return
-        for row in range(self.rowCount()):
-            item = self.item(row, 0)
-            is_result = item is not None and bool(item.data(Qt.ItemDataRole.UserRole))
-            colour = QColor(self._theme.result if is_result else self._theme.exemplar)
-            self.verticalHeaderItem(row).setForeground(colour)
+    def _paint_headings(self) -> None:
+        for column in range(self.columnCount()):
+            heading = self.horizontalHeaderItem(column)
+            if heading is not None and self._theme is not None:
+                is_result = bool(heading.data(Qt.ItemDataRole.UserRole))
+                heading.setForeground(QColor(self._theme.result if is_result else self._theme.exemplar))
+
+
+def _moment_texts(found: Moments) -> list[str]:
+    return [number(value) for value in (found.mean, found.sd, found.skewness, found.kurtosis)]

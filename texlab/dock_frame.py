@@ -1,10 +1,11 @@
-"""What the docks share: a line of controls, a body, a sentence instead of the body, and keys by identity."""
+"""What the docks share: a line of controls, a body, a sentence instead of the body."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -27,21 +28,6 @@ if TYPE_CHECKING:
     from texlab.scene import ColumnScene
     from texlab.theme import Theme
     from texlab_core.steps import FloatImage
-
-
-class Same:
-    """Makes any object a part of a key: equal only to itself, and alive as long as the key."""
-
-    __slots__ = ("value",)
-
-    def __init__(self, value: object) -> None:
-        self.value = value
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.value is self.value
-
-    def __hash__(self) -> int:
-        return id(self.value)
 
 
 def shown_image(column: ColumnScene | None) -> FloatImage | None:
@@ -175,13 +161,36 @@ class FramedDock(Dock):
         self.add_control(button, name, label, tip)
         return button
 
-    def add_readout(self) -> QLabel:
-        """Add the place where the value under the cursor is told."""
-        label = QLabel("")
-        label.setProperty("role", "muted")
-        label.setTextFormat(Qt.TextFormat.PlainText)
-        self.add_control(label, "readout", "Value under the cursor", "The value under the cursor")
-        return label
+    def add_readout(self) -> Readout:
+        """Add the place where the value under the cursor is told, over the body's lower right corner."""
+        return Readout(f"{self.name}-readout", self.body)
+
+
+class Readout(QLabel):
+    """A line of text that lies over a corner of its parent and takes no room in the layout."""
+
+    def __init__(self, name: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._over = parent
+        self.setObjectName(name)
+        self.setAccessibleName("Value under the cursor")
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setAutoFillBackground(True)
+        self.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
+        self.setForegroundRole(QPalette.ColorRole.ToolTipText)
+        self.setMargin(3)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.hide()
+
+    def setText(self, text: str) -> None:
+        """Show a text, or nothing."""
+        super().setText(text)
+        self.setVisible(bool(text))
+        if text:
+            self.adjustSize()
+            area = self._over.rect()
+            self.move(max(0, area.right() - self.width() - 6), area.bottom() - self.height() - 6)
+            self.raise_()
 
 
 def replace_items(box: QComboBox, items: list[tuple[str, Any]]) -> None:

@@ -97,14 +97,15 @@ class Mosaic:
         return whole
 
 
-def columns_for(count: int, shape: tuple[int, int], area: tuple[int, int]) -> int:
-    """Return with how many columns ``count`` tiles of a shape become largest in an area (height, width)."""
+def equal_columns(shapes: Sequence[tuple[int, int]], area: tuple[int, int]) -> int:
+    """Return with how many columns :func:`equal_tiles` becomes largest in an area (height, width)."""
+    height, width = _tile(shapes)
 
-    def tile(columns: int) -> float:
-        rows = -(-count // columns)
-        return min(area[1] / (columns * shape[1]), area[0] / (rows * shape[0]))
+    def scale(columns: int) -> float:
+        rows = -(-len(shapes) // columns)
+        return min(area[1] / (columns * width), area[0] / (rows * height))
 
-    return max(range(1, count + 1), key=lambda columns: (round(tile(columns), 6), -columns))
+    return max(range(1, len(shapes) + 1), key=lambda columns: (round(scale(columns), 6), -columns))
 
 
 def equal_tiles(shapes: Sequence[tuple[int, int]], columns: int) -> Mosaic:
@@ -142,6 +143,17 @@ def pyramid_tiles(shapes: Sequence[tuple[int, int]], columns: int) -> Mosaic:
         left += across * (width + gap)
         start = stop
     return Mosaic((lowest + gap, left), tuple(cells), tuple(shapes))
+
+
+def pyramid_columns(shapes: Sequence[tuple[int, int]], area: tuple[int, int]) -> int:
+    """Return with how many bands of a level side by side :func:`pyramid_tiles` becomes largest in an area."""
+
+    def scale(columns: int) -> float:
+        height, width = pyramid_tiles(shapes, columns).size
+        return min(area[0] / height, area[1] / width)
+
+    most = max(shapes.count(shape) for shape in shapes)
+    return max(range(1, most + 1), key=lambda columns: (round(scale(columns), 6), -columns))
 
 
 def _tile(shapes: Sequence[tuple[int, int]]) -> tuple[int, int]:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QImage, QPainter
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.theme import configure_pyqtgraph
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-    from PySide6.QtCore import QPointF
-    from PySide6.QtGui import QPaintEvent
+    from PySide6.QtCore import QObject
+    from PySide6.QtGui import QPaintEvent, QResizeEvent
 
     from texlab.scene import Picture
     from texlab.theme import Theme
@@ -27,6 +27,8 @@ pg = configure_pyqtgraph()
 
 Role = Literal["exemplar", "result", "third", "good", "warning", "error", "muted", "text", "accent"]
 Line = Literal["solid", "dash", "dot"]
+ROOM_FOR_LABELS = 170
+TICK_ROOM = 20
 LINES = {"solid": Qt.PenStyle.SolidLine, "dash": Qt.PenStyle.DashLine, "dot": Qt.PenStyle.DotLine}
 # Colours and line styles for any number of series: no two of the first nine look alike without colour either.
 SERIES: tuple[tuple[Role, Line], ...] = (
@@ -69,16 +71,30 @@ class Plot(QWidget):
         self._series: list[_Series] = []
         self._texts: list[tuple[Any, Role]] = []
         self._labels = ("", "")
-        self.graph: Any = pg.PlotWidget(self, background=None, enableMenu=False)
+        self._log = False
+        self.graph: Any = pg.GraphicsView(self, background=None)
         self.graph.setObjectName(f"{name}-graph")
         self.graph.setAccessibleName(label)
         self.graph.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.graph.setMinimumSize(60, 50)
-        self.plot: Any = self.graph.getPlotItem()
-        self.plot.hideButtons()
-        self.view: Any = self.plot.getViewBox()
-        # The scene drops moves that follow each other quickly, the last one too; the view does not.
-        self.graph.sigSceneMouseMoved.connect(self._moved)
+        # A view and two axes: pyqtgraph's PlotItem brings seven menus and a hidden form with it.
+        grid = pg.GraphicsLayout()
+        grid.setContentsMargins(0, 4, 6, 0)
+        grid.setSpacing(0)
+        self.graph.setCentralItem(grid)
+        self.view: Any = pg.ViewBox(enableMenu=False)
+        grid.addItem(self.view, 0, 1)
+        self.axes: dict[str, Any] = {}
+        for side, row, column in (("left", 0, 0), ("bottom", 1, 1)):
+            axis = self.axes[side] = pg.AxisItem(side)
+            axis.enableAutoSIPrefix(False)
+            axis.linkToView(self.view)
+            grid.addItem(axis, row, column)
+        self.view.sigYRangeChanged.connect(self._place_ticks)
+        self.view.sigResized.connect(self._place_ticks)
+        self.graph.setMouseTracking(True)
+        # The scene drops moves that follow each other quickly, even the last one; the viewport drops none.
+        self.graph.viewport().installEventFilter(self)
         self.graph.scene().sigMouseClicked.connect(self._clicked)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -89,12 +105,19 @@ class Plot(QWidget):
         """Ask for little: docks are low."""
         return QSize(200, 120)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the names of the axes out where the plot is low."""
+        super().resizeEvent(event)
+        if (event.oldSize().height() < ROOM_FOR_LABELS) != (event.size().height() < ROOM_FOR_LABELS):
+            for side, words in zip(("bottom", "left"), self._labels, strict=True):
+                self.axes[side].showLabel(bool(words) and event.size().height() >= ROOM_FOR_LABELS)
+
     def clear(self) -> None:
         """Take all curves and texts away."""
         for series in self._series:
-            self.plot.removeItem(series.item)
+            self.view.removeItem(series.item)
         for item, _ in self._texts:
-            self.plot.removeItem(item)
+            self.view.removeItem(item)
         self._series.clear()
         self._texts.clear()
 
@@ -132,7 +155,7 @@ class Plot(QWidget):
             fillLevel=floor if filled else None,
         )
         self._series.append(_Series(item, role, line, width, filled))
-        self.plot.addItem(item)
+        self.view.addItem(item)
         if self._theme is not None:
             self._paint(self._series[-1], self._theme)
         return item
@@ -142,7 +165,7 @@ class Plot(QWidget):
         item = pg.TextItem(words, anchor=anchor)
         item.setPos(x, y)
         self._texts.append((item, role))
-        self.plot.addItem(item, ignoreBounds=True)
+        self.view.addItem(item, ignoreBounds=True)
         if self._theme is not None:
             item.setColor(QColor(getattr(self._theme, role)))
         return item
@@ -153,10 +176,22 @@ class Plot(QWidget):
         if self._theme is not None:
             self._paint_axes(self._theme)
 
-    def set_log(self, *, x: bool = False, y: bool = False) -> None:
-        """Write the ticks of an axis as powers of ten; the curves are given as log10 already."""
-        self.plot.getAxis("bottom").setLogMode(x)
-        self.plot.getAxis("left").setLogMode(y)
+    def set_log(self, on: bool) -> None:
+        """Write the ticks of the left axis for values that are given as log10 already."""
+        self._log = on
+        self._place_ticks()
+
+    def _place_ticks(self, *_: object) -> None:
+        """Choose the numbers at the axes for the room that there is."""
+        self.axes["bottom"].setTickDensity(float(np.clip(self.width() / 500, 0.2, 1.0)))
+        axis = self.axes["left"]
+        if not self._log:
+            axis.setTicks(None)
+            axis.setTickDensity(0.6 if self.height() < ROOM_FOR_LABELS else 1.0)
+            return
+        low, high = self.view.viewRange()[1]
+        height = max(self.view.height(), 1.0)
+        axis.setTicks([log_ticks(low, high, TICK_ROOM * (high - low) / height)])
 
     def fit(self, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
         """Show a range, or everything where it is left out."""
@@ -179,12 +214,12 @@ class Plot(QWidget):
 
     def _paint_axes(self, theme: Theme) -> None:
         for side, words in zip(("bottom", "left"), self._labels, strict=True):
-            axis = self.plot.getAxis(side)
+            axis = self.axes[side]
             axis.setPen(pg.mkPen(theme.border))
             axis.setTextPen(pg.mkPen(theme.muted))
-            axis.setStyle(tickLength=-4, maxTickLevel=1)
+            axis.setStyle(tickLength=-4, maxTickLevel=0)
             axis.setLabel(words or None, color=theme.muted)
-            axis.showLabel(bool(words))
+            axis.showLabel(bool(words) and self.height() >= ROOM_FOR_LABELS)
 
     def _paint(self, series: _Series, theme: Theme) -> None:
         colour = QColor(getattr(theme, series.role))
@@ -194,12 +229,18 @@ class Plot(QWidget):
             wash.setAlpha(60)
             series.item.setBrush(pg.mkBrush(wash))
 
-    def _moved(self, where: QPointF) -> None:
-        if self.view.sceneBoundingRect().contains(where):
-            point = self.view.mapSceneToView(where)
-            self.hovered.emit(float(point.x()), float(point.y()))
-        else:
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Tell where the cursor is."""
+        if event.type() == QEvent.Type.Leave:
             self.left.emit()
+        elif isinstance(event, QMouseEvent) and event.type() == QEvent.Type.MouseMove:
+            where = self.graph.mapToScene(event.position().toPoint())
+            if self.view.sceneBoundingRect().contains(where):
+                point = self.view.mapSceneToView(where)
+                self.hovered.emit(float(point.x()), float(point.y()))
+            else:
+                self.left.emit()
+        return super().eventFilter(watched, event)
 
     def _clicked(self, event: Any) -> None:
         if event.double():
@@ -302,8 +343,23 @@ class PicturePane(ImagePane):
         super().set_picture(picture)
 
 
+def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
+    """Return (log10 of the value, text) of round values between two logarithms, at least ``apart`` apart."""
+    powers = range(int(np.floor(low)) - 1, int(np.ceil(high)) + 1)
+    ticks: list[float] = []
+    # Powers of ten first; then what still has room between them.
+    for factors in ((1,), (2, 5), (3, 7)):
+        for power in powers:
+            for factor in factors:
+                place = power + float(np.log10(factor))
+                if low <= place <= high and all(abs(place - other) >= apart for other in ticks):
+                    ticks.append(place)
+    return [(place, number(float(f"{10**place:.1g}"))) for place in sorted(ticks)]
+
+
 def number(value: float) -> str:
     """Return a number with four digits that matter, for tables and read-outs."""
+    value = value + 0.0  # no minus before zero
     if not np.isfinite(value):
         return "none"
     if value != 0 and (abs(value) >= 1e5 or abs(value) < 1e-4):

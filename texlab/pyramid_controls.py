@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab.dock_frame import Same
-from texlab.recent import Recent
+from texlab.recent import Recent, Same
 from texlab_core.stats.bands import channel_names, projection, split
 
 if TYPE_CHECKING:

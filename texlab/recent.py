@@ -1,4 +1,4 @@
-"""The last few values that were computed, shared between threads."""
+"""The last few values that were computed, shared between threads, and keys by identity."""
 
 from __future__ import annotations
 
@@ -10,6 +10,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
 ValueT = TypeVar("ValueT")
+
+
+class Same:
+    """Makes any object a part of a key: equal only to itself, and alive as long as the key."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.value is self.value
+
+    def __hash__(self) -> int:
+        return id(self.value)
 
 
 class Recent:

@@ -20,7 +20,7 @@ def test_steerable_bands_are_those_of_the_reflected_pyramid():
     for band, (_, values) in zip(found, expected, strict=True):
         assert np.array_equal(band.plane, values)
     assert [band.label for band in found] == [
-        "high", "0 · 0°", "0 · 60°", "0 · 120°", "1 · 0°", "1 · 60°", "1 · 120°", "low",
+        "high", "0·0°", "0·60°", "0·120°", "1·0°", "1·60°", "1·120°", "low",
     ]  # fmt: skip
     assert [band.signed for band in found] == [True] * 7 + [False]
     assert found[3].title == "level 0, waves along 120°"

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from dock_scenes import check_controls, column_of, feed, frames, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
-from dock_scenes import check_controls, column_of, feed, frames, noise, scene_of, shown
 from texlab.docks.steps import StepsDock
 
 

@@ -5,27 +5,26 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtWidgets import QBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from texlab.comparison import Comparison, compare
 from texlab.comparison_view import HistogramPlot, NumbersTable
-from texlab.dock_frame import FramedDock, Same, replace_items, shown_image
+from texlab.dock_frame import FramedDock, replace_items, shown_image
 from texlab.pyramid_controls import BandCache, PyramidControls, PyramidSettings, channel_items
+from texlab.recent import Same
 from texlab.scene import Question
-from texlab_core.stats.bands import CHANNELS, Channel, names, projection
-from texlab_core.transforms.steerable import BandKey, band_keys
+from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from PySide6.QtGui import QResizeEvent
-
     from texlab.scene import Scene
     from texlab.theme import Theme
     from texlab_core.steps import FloatImage
+    from texlab_core.transforms.steerable import BandKey
 
 COLOURS: tuple[Channel, ...] = CHANNELS[1:4]
-NARROW = 760
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,6 @@ class HistogramsDock(FramedDock):
         )
         self.pyramid = PyramidControls(self, ("steerable", "laplacian"))
         self.band = self.add_choice("band", "Subband", "Which subband (level 0 is the finest)", [], self.ask)
-        self.band.setMinimumContentsLength(24)
         self.log = self.add_switch(
             "log", "Log", "Logarithmic shares: the tails can be seen", lambda _: self._redraw()
         )
@@ -97,26 +95,23 @@ class HistogramsDock(FramedDock):
         self.plots[0].setToolTip("Exemplar: solid and filled. Result: dashed.")
         self.table = NumbersTable("histograms-numbers")
         plots = QWidget()
-        self._plot_line = QBoxLayout(QBoxLayout.Direction.LeftToRight, plots)
-        self._plot_line.setContentsMargins(0, 0, 0, 0)
+        side_by_side = QHBoxLayout(plots)
+        side_by_side.setContentsMargins(0, 0, 0, 0)
         for plot in self.plots:
             plot.hovered.connect(self._hover)
             plot.left.connect(lambda: self.readout.setText(""))
-            self._plot_line.addWidget(plot)
-        self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self.body)
-        self._halves.setContentsMargins(6, 0, 6, 6)
-        self._halves.addWidget(plots, 1)
-        beside = QVBoxLayout()
-        beside.addWidget(self.table)
-        beside.addStretch(1)
-        self._halves.addLayout(beside)
-        self.table.setMaximumHeight(self.table.sizeHint().height() * 4)
+            side_by_side.addWidget(plot)
+        layout = QHBoxLayout(self.body)
+        layout.setContentsMargins(6, 0, 6, 6)
+        layout.addWidget(plots, 1)
+        layout.addWidget(self.table, 0, Qt.AlignmentFlag.AlignTop)
         self._source_changed(quietly=True)
 
     def paint_theme(self, theme: Theme) -> None:
         """Give plots and table their colours."""
-        for each in (*self.plots, self.table):
-            each.set_theme(theme)
+        for plot in self.plots:
+            plot.set_theme(theme)
+        self.table.set_theme(theme)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the distributions of the chosen values in the exemplar and the chosen column."""
@@ -144,22 +139,6 @@ class HistogramsDock(FramedDock):
             plot.setVisible(shown is not None)
         self._redraw()
         self.table.show_comparisons(answer)
-        self._turn()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Put the numbers below the plots where the dock is narrow and high enough."""
-        super().resizeEvent(event)
-        self._turn()
-
-    def _turn(self) -> None:
-        below = self.width() < NARROW and self.height() > 1.2 * self.table.sizeHint().height() + 160
-        ways = QBoxLayout.Direction
-        self._halves.setDirection(ways.TopToBottom if below else ways.LeftToRight)
-        hint = self.table.sizeHint()
-        self.table.setFixedHeight(min(hint.height(), max(50, self.body.height() - 8)))
-        self.table.setFixedWidth(
-            hint.width() if below else min(hint.width(), max(190, round(self.width() * 0.46)))
-        )
 
     def _settings(self) -> HistogramSettings:
         chosen = self.channel.currentData()
@@ -174,14 +153,9 @@ class HistogramsDock(FramedDock):
             items.insert(1, ("red, green, blue", "rgb"))
         replace_items(self.channel, items)
         settings = self.pyramid.settings
-        keys: list[BandKey]
-        if settings.kind == "steerable":
-            keys = list(band_keys(settings.levels, settings.orientations))
-        else:
-            keys = [BandKey("laplacian", level) for level in range(settings.levels)]
-            keys.append(BandKey("lowpass", settings.levels))
+        keys = band_keys(settings.kind, settings.levels, settings.orientations)
         entries: list[tuple[str, Any]] = [
-            (names(key, settings.kind, settings.orientations)[0], key) for key in keys
+            (names(key, settings.kind, settings.orientations)[1], key) for key in keys
         ]
         replace_items(self.band, entries)
 
@@ -195,7 +169,10 @@ class HistogramsDock(FramedDock):
 
     def _redraw(self) -> None:
         for plot, shown in zip(self.plots, self.answer or (), strict=False):
-            plot.show_comparison(shown, log=self.log.isChecked(), cumulated=self.cumulated.isChecked())
+            first = plot is self.plots[0]
+            plot.show_comparison(
+                shown, log=self.log.isChecked(), cumulated=self.cumulated.isChecked(), named=first
+            )
 
     def _hover(self, x: float, y: float) -> None:
         plot = self.sender()

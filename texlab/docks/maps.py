@@ -20,8 +20,9 @@ from PySide6.QtWidgets import (
 )
 
 from texlab import colouring
-from texlab.dock_frame import FramedDock, Same, replace_items
+from texlab.dock_frame import FramedDock, replace_items
 from texlab.plots import ColourBar, PicturePane, number, pg
+from texlab.recent import Same
 from texlab.scene import Question
 
 if TYPE_CHECKING:

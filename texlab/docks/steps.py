@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
 
-from texlab.dock_frame import FramedDock, Same
+from texlab.dock_frame import FramedDock
 from texlab.plots import PicturePane
+from texlab.recent import Same
 from texlab.scene import Question
 
 if TYPE_CHECKING:

@@ -152,7 +152,7 @@ def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]
         return "high-pass residual", "high"
     if key.kind == "oriented":
         angle = f"{180 * key.orientation / orientations:.3g}°"
-        return f"level {key.level}, waves along {angle}", f"{key.level} · {angle}"
+        return f"level {key.level}, waves along {angle}", f"{key.level}·{angle}"
     if key.kind == "bandpass":
         return f"level {key.level}", str(key.level)
     return (f"level {key.level}", str(key.level)) if kind == "gaussian" else ("low-pass residual", "low")

@@ -1,0 +1,313 @@
+"""Convergence: how far the statistics are from the exemplar's, iteration by iteration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+
+from texlab.colouring import SEQUENTIAL_TABLE
+from texlab.dock_frame import FramedDock, replace_items
+from texlab.heat_map import HeatMap
+from texlab.plots import SERIES, Plot, number
+from texlab.recent import Same
+from texlab.scene import Question
+from texlab_core.steps import Curve
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+    from PySide6.QtGui import QResizeEvent
+
+    from texlab.scene import ColumnScene, Scene
+    from texlab.theme import Theme
+    from texlab_core.transforms.steerable import BandKey
+
+MEAN = "mean-distance"
+WIDE_ENOUGH = 860
+
+
+@dataclass(frozen=True, eq=False)
+class Heat:
+    """Distances of the subbands by iteration on a grid of levels and orientations.
+
+    Parameters
+    ----------
+    values
+        (iterations, R, C) float64; NaN where there is no subband.
+    rows, columns
+        Names of the levels and of the orientations.
+    curves
+        Name of the curve of each cell, "" where there is none.
+    """
+
+    values: NDArray[np.float64]
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    curves: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ConvergenceAnswer:
+    """Curves of all columns by name, the chosen column's own, and its heat map."""
+
+    overlaid: tuple[tuple[str, bool, Curve], ...]
+    own: dict[str, Curve] = field(default_factory=dict)
+    chosen: str = MEAN
+    heat: Heat | None = None
+
+
+def heat_of(details: Any) -> Heat | None:
+    """Return the heat map of a result's details, when they carry distances by iteration, axis and subband."""
+    keys: Sequence[BandKey] | None = getattr(details, "keys", None)
+    distances = getattr(details, "distances", None)
+    if callable(keys) or not keys or distances is None or np.ndim(distances) != 3 or not np.size(distances):
+        return None
+    mean = np.asarray(distances, np.float64).mean(axis=1)
+    oriented = max((key.orientation for key in keys if key.kind == "oriented"), default=0) + 1
+    rows = list(dict.fromkeys(_row(key) for key in keys))
+    values = np.full((len(mean), len(rows), oriented), np.nan)
+    curves = [[""] * oriented for _ in rows]
+    for index, key in enumerate(keys):
+        row = rows.index(_row(key))
+        values[:, row, key.orientation] = mean[:, index]
+        curves[row][key.orientation] = f"band-{key.label}"
+    angles = tuple(f"{180 * k / oriented:.3g}°" for k in range(oriented)) if oriented > 1 else ("",)
+    return Heat(values, tuple(rows), angles, tuple(tuple(row) for row in curves))
+
+
+def _row(key: BandKey) -> str:
+    return {"highpass": "high", "lowpass": "low"}.get(key.kind, f"level {key.level}")
+
+
+class LiveCurves:
+    """Curves that grow with the numbers a running column reports."""
+
+    def __init__(self) -> None:
+        self._values: dict[int, dict[str, list[float]]] = {}
+
+    def watch(self, column: ColumnScene) -> None:
+        """Take the newest numbers of a column; a column that does not run, or has none yet, starts afresh."""
+        if column.status != "running" or not column.metrics:
+            self._values.pop(column.id, None)
+            return
+        known = self._values.setdefault(column.id, {})
+        for name, value in column.metrics.items():
+            series = known.setdefault(name, [])
+            if not series or series[-1] != value:
+                series.append(float(value))
+
+    def curves(self, column: ColumnScene) -> dict[str, Curve]:
+        """Return what was reported so far."""
+        known = self._values.get(column.id, {})
+        return {name: Curve.of(values, name.replace("-", " ")) for name, values in known.items()}
+
+
+class ConvergenceDock(FramedDock):
+    """Shows the curves of the chosen column, those of the others over them, and distances by subband."""
+
+    name = "convergence"
+    title = "Convergence"
+    help = "How far the statistics are from the exemplar's, iteration by iteration."
+    order = 50
+    empty = "Curves appear while a method that iterates runs."
+
+    def build(self) -> None:
+        """Make the controls, the plots and the heat map."""
+        self._live = LiveCurves()
+        self._heat: Heat | None = None
+        self.curve = self.add_choice("curve", "Curve", "Which curve to show for all columns", [], self.ask)
+        self.log = self.add_switch("log", "Log", "Logarithmic distance", lambda _: self._redraw())
+        self.log.setChecked(True)
+        self.iteration = QSlider(Qt.Orientation.Horizontal)
+        self.iteration.setFixedWidth(120)
+        self.iteration.setPageStep(1)
+        self.iteration.valueChanged.connect(self._show_heat)
+        tip = "Iteration that the heat map shows"
+        self.add_control(self.iteration, "iteration", "Iteration of the heat map", tip)
+        self.iteration_label = QLabel("")
+        self.add_control(self.iteration_label, "iteration-label", "Iteration of the heat map", tip)
+        self.readout = self.add_readout()
+
+        self.plot = Plot("convergence-plot", "Curve of all columns")
+        self.plot.hovered.connect(self._hover_curve)
+        self.plot.left.connect(lambda: self.readout.setText(""))
+        self.all = Plot("convergence-all", "All curves of the chosen column")
+        self.all.setToolTip("All curves of the chosen column; the chosen one is thick")
+        self.heat = HeatMap("convergence-heat", "Distance by level and orientation")
+        self.heat.setToolTip(
+            "Distance of every subband, levels down and orientations across; click or arrow keys show its curve"
+        )
+        self.heat.chosen.connect(self._choose_cell)
+        self.heat.hovered.connect(self._hover_cell)
+        self.legend = QLabel("")
+        self.legend.setObjectName("convergence-legend")
+        self.legend.setTextFormat(Qt.TextFormat.RichText)
+        self.legend.setWordWrap(True)
+        first = QWidget()
+        column = QVBoxLayout(first)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addWidget(self.legend)
+        column.addWidget(self.plot, 1)
+        layout = QHBoxLayout(self.body)
+        layout.setContentsMargins(6, 0, 6, 6)
+        layout.addWidget(first, 5)
+        layout.addWidget(self.all, 3)
+        layout.addWidget(self.heat, 3)
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give plots, legend and heat map their colours."""
+        for plot in (self.plot, self.all):
+            plot.set_theme(theme)
+        self.heat.set_theme(theme)
+        self._write_legend()
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the curves; there is nothing to compute but the heat map."""
+        self.why = ""
+        by_column = []
+        for column in scene.columns:
+            self._live.watch(column)
+            by_column.append((column, dict(column.result.curves) if column.result else self._live.curves(column)))
+        selected = scene.selected
+        own = next((curves for column, curves in by_column if column.id == scene.selected_id), {})
+        if selected is None or not own:
+            if selected is not None and selected.result is not None:
+                self.why = f"{selected.title} records no curves."
+            replace_items(self.curve, [])
+            return None
+        replace_items(self.curve, [(each.title, name) for name, each in own.items()])
+        chosen = self.curve.currentData()
+        overlaid = tuple(
+            (column.title, column.id == scene.selected_id, curves[chosen])
+            for column, curves in by_column
+            if chosen in curves
+        )
+        details = selected.result.details if selected.result is not None else None
+
+        def compute(should_stop: Callable[[], bool]) -> ConvergenceAnswer:
+            return ConvergenceAnswer(overlaid, own, chosen, heat_of(details))
+
+        lengths = tuple((title, here, curve.y.tobytes()) for title, here, curve in overlaid)
+        return Question((self.name, Same(details), chosen, tuple(own), lengths), compute)
+
+    def show_answer(self, answer: ConvergenceAnswer) -> None:
+        """Draw the curves and the heat map."""
+        same_run = self._heat is not None and answer.heat is not None
+        self._heat = answer.heat
+        for widget in (self.heat, self.iteration, self.iteration_label):
+            widget.setVisible(answer.heat is not None)
+        if answer.heat is not None:
+            last = len(answer.heat.values) - 1
+            at_end = not same_run or self.iteration.value() == self.iteration.maximum()
+            blocked = self.iteration.blockSignals(True)
+            self.iteration.setRange(0, last)
+            self.iteration.setValue(last if at_end else min(self.iteration.value(), last))
+            self.iteration.blockSignals(blocked)
+            self._show_heat()
+        self._write_legend()
+        self._redraw()
+        self._make_room()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the small curves out where there is no room for them."""
+        super().resizeEvent(event)
+        self._make_room()
+
+    def _make_room(self) -> None:
+        many = self.answer is not None and len(self.answer.own) > 1
+        self.all.setVisible(many and (self.width() >= WIDE_ENOUGH or self._heat is None))
+
+    def _redraw(self) -> None:
+        answer: ConvergenceAnswer | None = self.answer
+        if answer is None:
+            return
+        log = self.log.isChecked()
+        self.plot.clear()
+        for (_, here, curve), (role, line) in zip(answer.overlaid, _styles(len(answer.overlaid)), strict=True):
+            self.plot.curve(*_points(curve, log), role, line=line, width=3 if here else 1.5)
+        shown = answer.own[answer.chosen]
+        self.plot.set_log(log)
+        self.plot.set_labels(shown.x_label, shown.y_label)
+        self.plot.fit()
+        self.all.clear()
+        for name, curve in answer.own.items():
+            if curve.x_label == shown.x_label and curve.y_label == shown.y_label:
+                thick = name == answer.chosen
+                self.all.curve(*_points(curve, log), "exemplar" if thick else "muted", width=3 if thick else 1)
+        self.all.set_log(log)
+        self.all.set_labels(shown.x_label, "")
+        self.all.fit()
+
+    def _write_legend(self) -> None:
+        answer: ConvergenceAnswer | None = self.answer
+        if answer is None:
+            return
+        words = []
+        strokes = {"solid": "━━", "dash": "╍╍", "dot": "┅┅"}
+        for (title, here, curve), (role, line) in zip(answer.overlaid, _styles(len(answer.overlaid)), strict=True):
+            name = f"<b>{title}</b>" if here else title
+            last = number(float(curve.y[-1])) if curve.y.size else ""
+            words.append(f"<span style='color:{getattr(self.theme, role)}'>{strokes[line]}</span> {name} {last}")
+        self.legend.setText("&nbsp;&nbsp; ".join(words))
+
+    def _show_heat(self, *_: object) -> None:
+        heat = self._heat
+        if heat is None:
+            return
+        place = self.iteration.value()
+        last = len(heat.values) - 1
+        self.iteration_label.setText(f"iteration {place} of {last}")
+        values = heat.values[place]
+        # Colours from the best to the worst subband of this iteration; the curves tell how far all have come.
+        logs = np.log(np.maximum(values, 1e-12))
+        low, high = (np.nanmin(logs), np.nanmax(logs)) if np.isfinite(logs).any() else (0.0, 1.0)
+        places = (logs - low) / max(high - low, 1e-9)
+        texts = [[f"{value:.3f}" if np.isfinite(value) else "" for value in row] for row in values]
+        self.heat.show_cells(places, texts, heat.rows, heat.columns, SEQUENTIAL_TABLE)
+        chosen = self.curve.currentData()
+        cells = [(r, c) for r, row in enumerate(heat.curves) for c, name in enumerate(row) if name == chosen]
+        self.heat.select(cells[0] if cells else None)
+
+    def _choose_cell(self, row: int, column: int) -> None:
+        if self._heat is not None:
+            place = self.curve.findData(self._heat.curves[row][column])
+            if place >= 0:
+                self.curve.setCurrentIndex(place)
+                self.ask()
+
+    def _hover_cell(self, row: int, column: int) -> None:
+        if self._heat is None or row < 0:
+            self.readout.setText("")
+            return
+        name = " ".join(part for part in (self._heat.rows[row], self._heat.columns[column]) if part)
+        value = self._heat.values[self.iteration.value(), row, column]
+        self.readout.setText(f"{name}: {number(float(value))}")
+
+    def _hover_curve(self, x: float, _: float) -> None:
+        answer: ConvergenceAnswer | None = self.answer
+        if answer is None:
+            return
+        words = []
+        for title, _, curve in answer.overlaid:
+            if curve.x.size:
+                nearest = int(np.argmin(np.abs(curve.x - x)))
+                words.append(f"{title} {number(float(curve.y[nearest]))}")
+        label = answer.own[answer.chosen].x_label
+        self.readout.setText(f"{label} {x:.0f}: " + ", ".join(words))
+
+
+def _styles(count: int) -> list[tuple[Any, Any]]:
+    return [SERIES[index % len(SERIES)] for index in range(count)]
+
+
+def _points(curve: Curve, log: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the points that can be drawn: with a logarithmic axis, only those above zero."""
+    usable = np.isfinite(curve.y) & (curve.y > 0) if log else np.isfinite(curve.y)
+    y = np.log10(curve.y[usable]) if log else curve.y[usable]
+    return curve.x[usable], y
