@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
 ResultT = TypeVar("ResultT")
+StepT = TypeVar("StepT")
 Task = Generator[int, None, ResultT]
 
 # While threads work, the caller is asked this often whether to go on.
@@ -41,6 +42,27 @@ def row_blocks(shape: Sequence[int], samples: int = 2**19) -> list[slice]:
     """Cut an array into slices of rows with at most ``samples`` entries each (but at least one row)."""
     rows = max(1, samples // max(1, math.prod(shape[1:])))
     return [slice(start, min(start + rows, shape[0])) for start in range(0, shape[0], rows)]
+
+
+class Pace:
+    """Turns work into steps: one for every ``stride`` units of work, and one whenever a task waits for threads."""
+
+    def __init__(self, stride: int) -> None:
+        self._stride = stride
+        self._work = 0
+
+    def steps(self, task: Task[ResultT], make: Callable[[int], StepT]) -> Generator[StepT, None, ResultT]:
+        """Run a task; ``make`` gets the work done since the last step."""
+        while True:
+            try:
+                work = next(task)
+            except StopIteration as end:
+                result: ResultT = end.value
+                return result
+            self._work += work
+            if self._work >= self._stride or not work:
+                done, self._work = self._work, 0
+                yield make(done)
 
 
 class Crew:

@@ -6,24 +6,24 @@ Reference: Heeger and Bergen 1995, sections 2.3 (match-texture), 2.4 (edges) and
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from texlab_core.color import ColourAxes, principal_axes
 from texlab_core.stats.histogram import Sample, sorted_sample
-from texlab_core.transforms import gaussian, laplacian, steerable
+from texlab_core.transforms import fourier, gaussian, laplacian, steerable
 from texlab_core.transforms.fourier import periodic_component
 from texlab_core.transforms.steerable import BandKey, Transform
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator, Mapping, Sequence
-
-    from numpy.typing import NDArray
+    from collections.abc import Mapping, Sequence
 
     from texlab_core.steps import FloatImage
-    from texlab_core.tasks import Task
+    from texlab_core.tasks import Crew, Task
 
+Plane = NDArray[np.float32]
 Pyramid = Literal["steerable", "laplacian", "textbook"]
 Border = Literal["reflect", "periodic", "wrap"]
 
@@ -118,8 +118,8 @@ def expansion(pyramid: Pyramid) -> gaussian.Expansion:
 
 
 def analyze(
-    image: FloatImage, pyramid: Pyramid, scales: int, orientations: int, border: Border
-) -> Generator[float, None, TextureModel]:
+    image: FloatImage, pyramid: Pyramid, scales: int, orientations: int, border: Border, team: Crew
+) -> Task[TextureModel]:
     """Analyze an exemplar.
 
     Parameters
@@ -128,11 +128,8 @@ def analyze(
         (H, W, C) float32 in [0, 1].
     pyramid, scales, orientations, border
         As in the method's parameters; fewer scales are used when the image is too small.
-
-    Yields
-    ------
-    float
-        Share of the work that is done.
+    team
+        Works on the subbands side by side.
 
     Returns
     -------
@@ -141,59 +138,77 @@ def analyze(
     """
     levels = min(scales, max_levels(image.shape, pyramid))
     palette = tuple(sorted_sample(image[..., channel]) for channel in range(image.shape[2]))
-    if np.all(image == image[..., :1]):
-        axes, planes = None, [np.ascontiguousarray(image[..., 0])]
-        if palette[0][0] == palette[0][-1]:
-            planes = []
-    else:
-        axes = principal_axes(image)
-        planes = list(axes.to_axes(image))
-    count = len(band_keys(pyramid, levels, orientations)) + levels
+    axes, planes = _planes(image)
+    yield image.size
     models = []
-    for index, plane in enumerate(planes):
+    for plane in planes:
+        pixels = target(plane, 0.0)
         bands: dict[BandKey, Target] = {}
-        pixels = _target(plane, 0.0)
-        for key, band in _bands(plane, pyramid, levels, orientations, border):
-            bands[key] = _target(band, pixels.spread * FAINT)
-            yield (index + len(bands) / count) / len(planes)
+        floor = pixels.spread * FAINT
+        whole = periodic_component(plane) if border == "periodic" else plane
+        yield plane.size
+        if pyramid == "steerable":
+            yield from _steerable_targets(whole, levels, orientations, border == "reflect", floor, bands, team)
+        else:
+            yield from _laplacian_targets(whole, levels, border, expansion(pyramid), floor, bands)
         models.append(PlaneModel(pixels, bands))
     return TextureModel(axes, tuple(models), palette, levels)
 
 
-def _target(values: NDArray[Any], floor: float) -> Target:
+def _planes(image: FloatImage) -> tuple[ColourAxes | None, list[Plane]]:
+    """Return the colour axes and the planes along them; an image of equal channels is its own one plane."""
+    if np.all(image == image[..., :1]):
+        constant = image.min() == image.max()
+        return None, [] if constant else [np.ascontiguousarray(image[..., 0])]
+    axes = principal_axes(image)
+    return axes, list(axes.to_axes(image))
+
+
+def target(values: Plane, floor: float) -> Target:
+    """Return the values as a target; its spread is not below ``floor``."""
     return Target(sorted_sample(values), max(float(values.std(dtype=np.float64)), floor))
 
 
-def _bands(
-    plane: NDArray[np.float32], pyramid: Pyramid, levels: int, orientations: int, border: Border
-) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
-    """Yield every subband, and the low-pass residual of every number of levels."""
-    if border == "periodic":
-        plane = periodic_component(plane)
-    if pyramid == "steerable":
-        return _steerable_bands(plane, levels, orientations, mirrored=border == "reflect")
-    return _laplacian_bands(plane, levels, "reflect" if border == "reflect" else "periodic", expansion(pyramid))
-
-
-def _steerable_bands(
-    plane: NDArray[np.float32], levels: int, orientations: int, *, mirrored: bool
-) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
-    size = plane.shape
+def _steerable_targets(
+    plane: Plane,
+    levels: int,
+    orientations: int,
+    mirrored: bool,
+    floor: float,
+    bands: dict[BandKey, Target],
+    team: Crew,
+) -> Task[None]:
+    """Fill in every subband, and the low-pass residual of every number of levels."""
     whole = steerable.mirror(plane) if mirrored else plane
     transform = Transform.of(whole, levels, orientations)
-    spectrum = transform.forward(whole)
-    residuals = [BandKey("lowpass", level) for level in range(levels)]
-    for key in (*transform.keys, *residuals):
-        band = transform.band(spectrum, key)
-        yield key, steerable.quadrant(band, size, key.level) if mirrored else band
+    spectrum = yield from fourier.rfft2(whole)
+
+    def task(key: BandKey) -> Task[tuple[BandKey, Target]]:
+        band = yield from transform.band_task(spectrum, key)
+        yield band.size
+        return key, target(steerable.quadrant(band, plane.shape, key.level) if mirrored else band, floor)
+
+    def accept(found: tuple[BandKey, Target]) -> tuple[()]:
+        bands[found[0]] = found[1]
+        return ()
+
+    keys = (*transform.keys, *(BandKey("lowpass", level) for level in range(levels)))
+    yield from team.in_order((task(key) for key in keys), accept)
 
 
-def _laplacian_bands(
-    plane: NDArray[np.float32], levels: int, border: gaussian.Border, mode: gaussian.Expansion
-) -> Iterator[tuple[BandKey, NDArray[np.float32]]]:
+def _laplacian_targets(
+    plane: Plane,
+    levels: int,
+    border: Border,
+    mode: gaussian.Expansion,
+    floor: float,
+    bands: dict[BandKey, Target],
+) -> Task[None]:
     for level in range(levels):
-        yield BandKey("lowpass", level), plane
-        band, coarser = laplacian.build(plane, 1, border, mode)
-        yield BandKey("bandpass", level), band
+        bands[BandKey("lowpass", level)] = target(plane, floor)
+        yield plane.size
+        band, coarser = laplacian.build(plane, 1, "reflect" if border == "reflect" else "periodic", mode)
+        bands[BandKey("bandpass", level)] = target(band, floor)
+        yield plane.size
         plane = coarser
-    yield BandKey("lowpass", levels), plane
+    bands[BandKey("lowpass", levels)] = target(plane, floor)

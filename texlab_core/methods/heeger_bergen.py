@@ -19,7 +19,7 @@ from texlab_core.marginals.rounds import Plan, match, match_round, measure
 from texlab_core.params import Knob, Params
 from texlab_core.registry import Method, register
 from texlab_core.steps import Curve, Output, Step
-from texlab_core.tasks import crew, finish, row_blocks
+from texlab_core.tasks import Pace, crew, finish, row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from texlab_core.marginals.analysis import TextureModel
     from texlab_core.run import Streams
     from texlab_core.steps import FloatImage
-    from texlab_core.tasks import Crew
+    from texlab_core.tasks import Crew, Task
     from texlab_core.transforms.steerable import BandKey
 
 ReturnT = TypeVar("ReturnT")
@@ -163,14 +163,18 @@ class Convergence:
 def analyze(inputs: Inputs, params: HeegerBergenParams) -> Generator[Step, None, TextureModel]:
     """Sort the pixels and the subbands of every colour axis."""
     image = exemplar_of(inputs).pixels
-    work = analysis.analyze(image, params.pyramid, params.scales, params.orientations, params.border)
-    while True:
-        try:
-            share = next(work)
-        except StopIteration as end:
-            model: TextureModel = end.value
-            return model
-        yield Step(round(1000 * share), 1000, "pyramid of the exemplar")
+    with crew() as team:
+        work = analysis.analyze(image, params.pyramid, params.scales, params.orientations, params.border, team)
+        # An estimate: every band is computed on the mirrored plane and sorted.
+        total = image.size * (4 if params.border == "reflect" else 1) * (4 * params.orientations // 3 + 4)
+        done = 0
+
+        def step(samples: int) -> Step:
+            nonlocal done
+            done = min(done + samples, total)
+            return Step(done, total, "pyramid of the exemplar")
+
+        return (yield from Pace(STRIDE).steps(work, step))
 
 
 def synthesize(
@@ -212,7 +216,7 @@ class _Run:
         axes = len(model.planes)
         self.distances = np.zeros((params.iterations + 1, axes, len(self.keys)))
         self.final, self.pixel_distance = self.distances[-1], 0.0
-        self.samples = 0
+        self.pace = Pace(STRIDE)
         # Start, each axis of each round, colours and measuring.
         self.total = 3 + params.iterations * max(axes, 1)
         self.done = 0
@@ -318,19 +322,8 @@ class _Run:
             f" result of {columns} x {rows} pixels.",
         )
 
-    def _steps(self, work: Generator[int, None, ReturnT], stage: str) -> Generator[Step, None, ReturnT]:
-        """Turn work into steps, one for every ``STRIDE`` samples."""
-        while True:
-            try:
-                samples = next(work)
-            except StopIteration as end:
-                returned: ReturnT = end.value
-                return returned
-            self.samples += samples
-            # No samples: waiting for other threads.
-            if self.samples >= STRIDE or not samples:
-                self.samples = 0
-                yield self._step(stage)
+    def _steps(self, work: Task[ReturnT], stage: str) -> Generator[Step, None, ReturnT]:
+        return self.pace.steps(work, lambda _: self._step(stage))
 
     def _step(self, stage: str, metrics: Mapping[str, float] | None = None, frame: str | None = None) -> Step:
         # The first planes of the noise make no picture yet.
