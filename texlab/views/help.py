@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QUrl, Signal
-from PySide6.QtGui import QImage, QTextDocument
+from PySide6.QtCore import QSignalBlocker, QUrl, Signal
+from PySide6.QtGui import QImage, QTextCursor, QTextDocument, QTextFormat
 from PySide6.QtWidgets import (
     QDialog,
     QHBoxLayout,
@@ -22,17 +22,20 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QShowEvent
 
 FIGURE_WIDTH = 720
+MARGIN = 16
 
 
 class HelpBrowser(QTextBrowser):
     """Shows pages and figures from the resources, wherever they are packed."""
 
     knob_wanted = Signal(str, str)
+    page_shown = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("help-page")
         self.setOpenLinks(False)
+        self.document().setDocumentMargin(MARGIN)
         self.anchorClicked.connect(self._follow)
         self.page = ""
 
@@ -44,7 +47,22 @@ class HelpBrowser(QTextBrowser):
             return False
         self.page = name
         self.setMarkdown(text)
+        self._arrange()
+        self.page_shown.emit(name)
         return True
+
+    def _arrange(self) -> None:
+        """Give headings room, and code an indent."""
+        block = self.document().begin()
+        while block.isValid():
+            shape = block.blockFormat()
+            if shape.headingLevel() > 0 and block.blockNumber() > 0:
+                shape.setTopMargin(MARGIN)
+                shape.setBottomMargin(MARGIN / 4)
+            elif shape.hasProperty(QTextFormat.Property.BlockCodeFence.value):
+                shape.setLeftMargin(MARGIN)
+            QTextCursor(block).setBlockFormat(shape)
+            block = block.next()
 
     def loadResource(self, kind: int, url: QUrl | str) -> object:
         """Load a figure from the resources."""
@@ -93,6 +111,7 @@ class HelpWindow(QDialog):
         outer.addLayout(layout)
         self.list.currentItemChanged.connect(lambda item, _: item and self.browser.show_page(item.data(256)))
         self.browser.knob_wanted.connect(self.knob_wanted)
+        self.browser.page_shown.connect(self._mark)
 
     def showEvent(self, event: QShowEvent) -> None:
         """List the pages when the window is first seen."""
@@ -109,6 +128,13 @@ class HelpWindow(QDialog):
         self.raise_()
         if not self.browser.show_page(name):
             self.browser.show_page("index")
+
+    def _mark(self, name: str) -> None:
+        """Choose the page in the list, so that the list does not choose another one when it gets the focus."""
+        for row in range(self.list.count()):
+            if self.list.item(row).data(256) == name:
+                with QSignalBlocker(self.list):
+                    self.list.setCurrentRow(row)
 
 
 def help_pages() -> list[tuple[str, str]]:

@@ -1,0 +1,129 @@
+"""The help pages: every link leads somewhere, every knob is explained, every figure can be redrawn."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from texlab_core.figures import encode, figures
+from texlab_core.params import describe
+from texlab_core.registry import methods
+from texlab_core.resources import resource
+
+PAGES = {
+    entry.name[:-3]: entry.read_text(encoding="utf-8")
+    for entry in resource("help").iterdir()
+    if entry.name.endswith(".md")
+}
+FIGURES = {entry.name: entry for entry in resource("help/figures").iterdir()}
+LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
+page_named = pytest.mark.parametrize("page", sorted(PAGES))
+
+
+def links(page, *, image=False):
+    return [target for bang, target in LINK.findall(PAGES[page]) if bool(bang) == image]
+
+
+@page_named
+def test_every_link_leads_somewhere(page):
+    for target in links(page):
+        if target.startswith("knob:"):
+            method, knob = target[5:].split("/")
+            assert knob in {each.name for each in describe(methods()[method].params)}, target
+        else:
+            assert target.endswith(".md")
+            assert target[:-3] in PAGES, target
+
+
+@page_named
+def test_every_figure_is_there_and_described(page):
+    for target in links(page, image=True):
+        assert target.startswith("figures/")
+        assert target[8:] in FIGURES
+    assert "![](" not in PAGES[page]
+
+
+@page_named
+def test_code_fits_the_page(page):
+    for code in re.findall(r"```(.*?)```", PAGES[page], re.DOTALL):
+        assert max(map(len, code.splitlines())) <= 80
+
+
+@page_named
+def test_a_page_starts_with_its_title_and_has_only_one(page):
+    first, *others = PAGES[page].splitlines()
+    assert re.fullmatch(r"# \S.*", first)
+    outside = re.sub(r"```.*?```", "", PAGES[page], flags=re.DOTALL)
+    assert len(re.findall(r"^# ", outside, re.MULTILINE)) == 1
+    assert PAGES[page].count("```") % 2 == 0
+    assert others
+
+
+@pytest.mark.parametrize("method", methods().values(), ids=lambda method: method.id)
+def test_every_method_has_a_page_that_names_all_its_knobs(method):
+    linked = {target[5:] for target in links(method.id) if target.startswith("knob:")}
+    assert {f"{method.id}/{each.name}" for each in describe(method.params)} <= linked
+    surname = re.search(r"[A-Z][a-z]{3,}", method.reference)[0]
+    assert surname in PAGES[method.id]
+
+
+def test_every_page_is_reached_from_the_index():
+    reached, waiting = set(), ["index"]
+    while waiting:
+        page = waiting.pop()
+        if page not in reached:
+            reached.add(page)
+            waiting += [target[:-3] for target in links(page) if target.endswith(".md")]
+    assert reached == set(PAGES)
+
+
+def test_the_figures_are_those_that_the_program_draws_and_all_are_used():
+    used = {target[8:] for page in PAGES for target in links(page, image=True)}
+    assert used == set(FIGURES) == {each.file for each in figures()}
+
+
+@pytest.mark.parametrize("name", sorted(FIGURES))
+def test_figures_fit_the_page(name):
+    content = FIGURES[name].read_bytes()
+    assert len(content) < 300_000
+    with Image.open(io.BytesIO(content)) as image:
+        assert 160 <= image.width <= 720
+        assert image.format == ("JPEG" if name.endswith(".jpg") else "PNG")
+
+
+def blocks(file):
+    """Return the mean colours of blocks of 16 x 16 pixels."""
+    with Image.open(file) as image:
+        small = image.convert("RGB").resize((image.width // 16, image.height // 16), Image.Resampling.BOX)
+    return np.asarray(small, np.float64), image.size
+
+
+@pytest.mark.parametrize(
+    "figure",
+    [
+        pytest.param(each, id=each.name, marks=[pytest.mark.slow] if "efros" in each.name else [])
+        for each in figures()
+    ],
+)
+def test_figures_are_redrawn_as_they_are_stored(figure):
+    """Blocks are compared, not pixels: on another machine a texture may come out with other details."""
+    drawn, size = blocks(io.BytesIO(encode(figure, figure.draw())))
+    stored, stored_size = blocks(io.BytesIO(FIGURES[figure.file].read_bytes()))
+    assert size == stored_size
+    assert np.abs(drawn - stored).mean() < 8
+
+
+def test_the_command_draws_what_was_asked_for(tmp_path, monkeypatch, capsys):
+    from texlab_core.figures.__main__ import main
+
+    monkeypatch.setattr("sys.argv", ["figures", str(tmp_path / "out"), "msg-table-2"])
+    assert main() == 0
+    assert [each.name for each in Path(tmp_path / "out").iterdir()] == ["msg-table-2.png"]
+    monkeypatch.setattr("sys.argv", ["figures", str(tmp_path), "no-such"])
+    assert main() == 2
+    assert "figure: must be one of" in capsys.readouterr().err

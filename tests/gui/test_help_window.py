@@ -1,0 +1,72 @@
+"""The help window: the page that was asked for, its links, and that pages and program agree."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QTextDocument
+
+from texlab.actions import COMMANDS
+from texlab.docks import dock_classes
+from texlab.views.help import HelpWindow, help_pages
+from texlab_core.resources import resource
+
+
+@pytest.fixture
+def window(qtbot):
+    made = HelpWindow()
+    qtbot.addWidget(made)
+    return made
+
+
+def text_of(page):
+    return resource(f"help/{page}.md").read_text(encoding="utf-8")
+
+
+def test_the_page_that_was_asked_for_is_shown_at_once_and_stays(window, qtbot):
+    window.open_page("de-bonet")
+    qtbot.waitExposed(window)
+    window.list.setFocus()
+    qtbot.wait(20)
+    assert window.browser.page == "de-bonet"
+    assert window.list.currentItem().data(256) == "de-bonet"
+    assert "multiresolution" in window.browser.toPlainText().lower()
+
+
+def test_an_unknown_page_is_the_index(window):
+    window.open_page("no-such-page")
+    assert window.browser.page == "index"
+
+
+@pytest.mark.parametrize("page", [name for name, _ in help_pages()])
+def test_every_page_shows_with_all_its_figures(window, page):
+    window.open_page(page)
+    assert window.browser.page == page
+    assert len(window.browser.toPlainText()) > 200
+    assert window.browser.document().idealWidth() < 760
+    for part in text_of(page).split("](figures/")[1:]:
+        url = QUrl(f"figures/{part.partition(')')[0]}")
+        image = window.browser.loadResource(QTextDocument.ResourceType.ImageResource.value, url)
+        assert image.width() > 100
+
+
+def test_links_lead_to_pages_and_to_knobs(window, qtbot):
+    window.open_page("index")
+    window.browser.anchorClicked.emit(QUrl("msg.md"))
+    assert window.browser.page == "msg"
+    assert window.list.currentItem().data(256) == "msg"
+    with qtbot.waitSignal(window.knob_wanted) as wanted:
+        window.browser.anchorClicked.emit(QUrl("knob:de-bonet/alpha"))
+    assert wanted.args == ["de-bonet", "alpha"]
+
+
+def test_all_keys_of_the_window_are_listed():
+    text = text_of("shortcuts")
+    missing = [command.keys for command in COMMANDS if command.keys and command.keys not in text]
+    assert not missing
+
+
+def test_all_tabs_are_explained():
+    text = text_of("window")
+    missing = [dock.title for dock in dock_classes() if f"**{dock.title}.**" not in text]
+    assert not missing
