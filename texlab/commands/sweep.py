@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import sys
 from typing import TYPE_CHECKING, Any
 
 from texlab.commands._options import (
@@ -15,10 +13,10 @@ from texlab.commands._options import (
     parse_size,
     refuse_overwriting,
 )
+from texlab.commands._progress import share_bar
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterator
 
     from texlab.cli import Parser
     from texlab_core.inputs import ImageInput
@@ -75,7 +73,7 @@ def execute(args: argparse.Namespace) -> int:
         refuse_overwriting(out, args.image)
     sweep = recipe.sweep(exemplar)
     check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.size, largest)
-    with _progress(f"{len(sweep.jobs)} x {sweep.base.method}") as show:
+    with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show:
         cells = run_sweep(sweep, on_progress=show)
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
     report(sweep, cells, str(out), as_json=args.json)
@@ -158,19 +156,3 @@ def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) ->
         ],
     }
     print(json.dumps(answer, default=lambda value: value.to_json(), allow_nan=False))
-
-
-@contextlib.contextmanager
-def _progress(title: str) -> Iterator[Callable[[float], None] | None]:
-    """Show a bar on standard error within the block, where someone can see it."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    percent = TextColumn("{task.percentage:>3.0f} %")
-    columns = (TextColumn("{task.description}"), BarColumn(), percent, TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=1.0)
-        yield lambda share: bar.update(task, completed=share)
