@@ -1,0 +1,1 @@
+"""Non-parametric sampling (Efros & Leung 1999): windows, order, growth, filling, explaining."""
