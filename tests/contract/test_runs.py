@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.contract.cases import IDS, METHODS, assert_image, assert_sentence, job, params_of, texture
@@ -216,7 +216,7 @@ def test_odd_inputs_work_or_are_refused_in_one_sentence(
 
 @pytest.mark.slow
 @each_method
-@settings(max_examples=25, suppress_health_check=list(HealthCheck))
+@settings(max_examples=25, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_every_setting_works_or_is_refused_in_one_sentence(method: Method, data: st.DataObject) -> None:
     params = data.draw(params_of(method))

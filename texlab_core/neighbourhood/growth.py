@@ -182,7 +182,8 @@ class Growth:
         # Finite: a layer was searched since the last time (a state may have been saved right after it was raised).
         if np.isfinite(levels[LAYER_BEST]) and self._filled() == self.filled_before_layer:
             while levels[ERROR_LIMIT] < levels[LAYER_BEST]:
-                levels[ERROR_LIMIT] *= RAISE
+                # The least subnormal numbers times 1.1 are themselves.
+                levels[ERROR_LIMIT] = max(levels[ERROR_LIMIT] * RAISE, np.finfo(np.float64).tiny)
         levels[LAYER_BEST] = np.inf
 
 
