@@ -45,6 +45,9 @@ COMMANDS = (
     Command("&Column", "previous", "&Previous column", "Ctrl+PgUp", "Choose the column to the left"),
     Command("&Column", "next", "&Next column", "Ctrl+PgDown", "Choose the column to the right"),
     Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),
+    Command(
+        "&Column", "go-on", "&Go on", "F6", "Go on from where the column stands, also after enlarging the size"
+    ),
     Command("&Column", "stop", "&Stop column", "Esc", "Stop the chosen column"),
     Command("&Column", "run-all", "Run a&ll", "Shift+F5", "Run every column"),
     Command("&Column", "stop-all", "S&top all", "Shift+Esc", "Stop every column"),

@@ -48,7 +48,6 @@ class Progress:
     image: FloatImage | None
     frames: tuple[Frame, ...]
     elapsed_s: float
-    state: Callable[[], Any] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +92,8 @@ class ColumnRun:
     cache: AnalysisCache
     draft: bool = False
     frames: list[Frame] = field(default_factory=list)
+    state: Callable[[], Mapping[str, Any]] | None = None
+    """Makes the arrays from which the run goes on where it stands; read it when the worker is free again."""
 
     def __call__(self, task: TaskLike) -> Finished:
         """Run to the end, reporting on the way."""
@@ -103,6 +104,7 @@ class ColumnRun:
         def watch(step: Step) -> None:
             nonlocal kept
             metrics.update(step.metrics)
+            self.state = step.state
             due = task.due()
             keep = step.frame is not None and not self.draft and kept < MAX_FRAME_BYTES
             image = step.preview() if step.preview is not None and (due or keep) else None
@@ -119,6 +121,7 @@ class ColumnRun:
                 )
 
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
+        self.state = getattr(result.details, "state", None)
         metrics |= {} if self.draft else spectral_distances(result)
         return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
 

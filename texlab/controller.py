@@ -17,11 +17,12 @@ from texlab.jobs import Request, Slots, Task, Worker
 from texlab.pictures import to_picture
 from texlab.resolve import difference, draft_size
 from texlab.scene import ColumnScene, Mark, Picture, Probe, Scene
+from texlab_core.inputs import ArraysInput
 from texlab_core.registry import find_method
 from texlab_core.run import AnalysisCache, Job
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab.session import Column, Sample, Session, State
     from texlab.theme import ThemeSource
@@ -40,6 +41,8 @@ class _Runtime:
     seconds: float | None = None
     started_at: float = 0.0
     drafted: bool = False
+    run: ColumnRun | None = None
+    kept: Callable[[], Mapping[str, Any]] | None = None
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -192,6 +195,12 @@ class Controller(QObject):
         """Run a column at full size."""
         self._start(column_id, draft=False)
 
+    def go_on(self, column_id: int) -> None:
+        """Go on from where a column was stopped or had finished, also at a larger size."""
+        runtime = self._runtimes.get(column_id)
+        if runtime is not None and runtime.kept is not None:
+            self._start(column_id, draft=False, state=runtime.kept)
+
     def run_all(self) -> None:
         """Run every column."""
         for column in self.session.state.columns:
@@ -201,6 +210,8 @@ class Controller(QObject):
         """Stop a column; the others go on."""
         runtime = self._runtimes.get(column_id)
         if runtime is not None and runtime.scene.status in ("waiting", "running"):
+            if runtime.run is not None and runtime.run.state is not None:
+                runtime.kept = runtime.run.state
             runtime.worker.cancel()
 
     def stop_all(self) -> None:
@@ -297,25 +308,28 @@ class Controller(QObject):
         for column_id in self._runtimes:
             self._set(column_id, status="failed", message=sentence, result=None, draft=False)
 
-    def _start(self, column_id: int, *, draft: bool) -> None:
+    def _start(self, column_id: int, *, draft: bool, state: Callable[[], Mapping[str, Any]] | None = None) -> None:
         runtime = self._runtimes.get(column_id)
         if runtime is None or self._prepared is None:
             return
         column = self._column(column_id)
-        state = self.session.state
+        session = self.session.state
         exemplar = self._prepared.exemplar
         method = find_method(column.method)
-        size = draft_size(state.size, runtime.seconds) if draft else None
+        size = draft_size(session.size, runtime.seconds) if draft else None
         runtime.drafted = size is not None
         own_draft = runtime.drafted and method.draft is not None
 
         def make_job() -> Job:
+            inputs = with_exemplar(exemplar, column.inputs)
+            if state is not None:
+                inputs["state"] = ArraysInput(state(), "state")
             return Job(
                 method=column.method,
-                inputs=with_exemplar(exemplar, column.inputs),
+                inputs=inputs,
                 params=column.params,
-                size=state.size if own_draft or size is None else size,
-                seed=state.seed,
+                size=session.size if own_draft or size is None else size,
+                seed=session.seed,
             )
 
         self._set(
@@ -335,13 +349,15 @@ class Controller(QObject):
         if own_draft:
             runtime.worker.submit(DraftRun(make_job))
         else:
-            runtime.worker.submit(ColumnRun(make_job, self._cache, draft=runtime.drafted))
+            runtime.run = ColumnRun(make_job, self._cache, draft=runtime.drafted)
+            runtime.worker.submit(runtime.run)
 
     # The workers report.
 
     def _set(self, column_id: int, **changes: Any) -> None:
         runtime = self._runtimes.get(column_id)
         if runtime is not None:
+            changes["resumable"] = runtime.kept is not None
             runtime.scene = dataclasses.replace(runtime.scene, **changes)
             self._refresh.start()
 
@@ -368,6 +384,7 @@ class Controller(QObject):
             return
         if not end.draft:
             runtime.seconds = end.result.elapsed_s
+            runtime.kept = runtime.run.state if runtime.run is not None else None
         changes: dict[str, Any] = {
             "status": "finished",
             "message": "",

@@ -211,6 +211,7 @@ class Explorer(QObject):
             "next": lambda: self._step_column(1),
             "run": lambda: controller.run_column(chosen()),
             "stop": lambda: controller.stop_column(chosen()),
+            "go-on": lambda: controller.go_on(chosen()),
             "run-all": controller.run_all,
             "stop-all": controller.stop_all,
             "fit": link.fit,
@@ -262,6 +263,8 @@ class Explorer(QObject):
             self.export(column_id)
         elif name == "copy":
             self.copy(column_id)
+        elif name == "go-on":
+            self.controller.go_on(column_id)
         elif name == "use":
             scene = self.controller.column_scene(column_id)
             if scene is not None and scene.result is not None:

@@ -56,6 +56,8 @@ class ColumnScene:
         The newest numbers of the run.
     elapsed_s
         Wall time of the run.
+    resumable
+        A stopped or finished run can be gone on with, also at a larger size.
     """
 
     id: int
@@ -72,6 +74,7 @@ class ColumnScene:
     frames: tuple[Frame, ...] = ()
     metrics: Mapping[str, float] = field(default_factory=dict)
     elapsed_s: float = 0.0
+    resumable: bool = False
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,7 @@ class ColumnView(QFrame):
     map_chosen = Signal(int, str)
 
     COMMANDS = (
+        ("go-on", "Go on from here"),
         ("duplicate", "Duplicate column"),
         ("left", "Move left"),
         ("right", "Move right"),
@@ -168,6 +169,7 @@ class ColumnView(QFrame):
         busy = scene.status in ("running", "waiting")
         self.stop_button.setVisible(busy)
         self.run_button.setVisible(not busy)
+        self.actions_by_name["go-on"].setEnabled(scene.resumable and not busy)
         for name in ("export", "use"):
             self.actions_by_name[name].setEnabled(scene.result is not None)
         self.actions_by_name["copy"].setEnabled(scene.picture is not None)
@@ -225,6 +227,8 @@ def status_line(scene: ColumnScene) -> str:
     sign = _SIGNS[scene.status]
     if sign:
         parts.append(sign)
+    if scene.status == "cancelled" and scene.resumable:
+        parts.append("F6 goes on")
     if scene.draft and scene.status in ("running", "finished"):
         parts.append("draft")
     if scene.status == "running" and scene.message:
