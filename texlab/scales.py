@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
 POSITIONS = 1000
 LINEAR_PART = 0.75
+MOST_DECIMALS = 6
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,13 @@ class Scale:
         knob = field.knob
         low = 0.0 if knob.low is None else float(knob.low)
         high = low + 100.0 if knob.high is None else float(knob.high)
-        step = 0.0
-        if field.kind == "int":
-            step = 2.0 if knob.odd else 1.0
-        whole = field.kind == "int" and not knob.log and (high - low) / step <= POSITIONS
-        positions = round((high - low) / step) if whole else POSITIONS
+        if field.kind != "int":
+            return cls(low, high, POSITIONS, knob.log, knob.linear_to)
+        low, high, step = math.ceil(low), math.floor(high), 1.0
+        if knob.odd:
+            low, high, step = low + (low + 1) % 2, high - (high + 1) % 2, 2.0
+        is_even = not knob.log and knob.linear_to is None and (high - low) / step <= POSITIONS
+        positions = round((high - low) / step) if is_even else POSITIONS
         return cls(low, high, max(positions, 1), knob.log, knob.linear_to, step)
 
     def value(self, position: int) -> float:
@@ -70,8 +73,18 @@ class Scale:
 
 
 def decimals(field: Field) -> int:
-    """Return how many decimals the number box of a float field shows."""
-    if field.knob.step is not None:
-        return max(0, min(6, -math.floor(math.log10(field.knob.step) + 1e-9)))
-    span = (field.knob.high or 1.0) - (field.knob.low or 0.0)
-    return 3 if span <= 10 else 2
+    """Return how many decimals the number box of a float field shows; limits and default are never rounded."""
+    knob = field.knob
+    if knob.step is not None:
+        usual = max(0, -math.floor(math.log10(knob.step) + 1e-9))
+    elif knob.log and knob.low:
+        # Two digits that matter at the lower end.
+        usual = max(2, 1 - math.floor(math.log10(knob.low)))
+    else:
+        usual = 3 if (knob.high or 1.0) - (knob.low or 0.0) <= 10 else 2
+    fixed = [value for value in (knob.low, knob.high, knob.linear_to, field.default) if value is not None]
+    return min(MOST_DECIMALS, max(usual, *map(_places, fixed)))
+
+
+def _places(value: float) -> int:
+    return len(f"{value:.{MOST_DECIMALS}f}".rstrip("0").partition(".")[2])

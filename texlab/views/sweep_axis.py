@@ -212,14 +212,18 @@ class AxisEditor(QWidget):
         if field.kind in ("bool", "choice"):
             self._check_boxes(vary.values)
             return
-        spacing: Spacing = "list"
-        for log, name in ((False, "even"), (True, "log")):
-            if is_range(field, vary.values, log=log):
-                spacing = "log" if name == "log" else "even"
-                break
-        self._set_numbers(spacing, float(vary.values[0]), float(vary.values[-1]), len(vary.values))
         self.listed.setText(written(vary.values))
+        for spacing in ("even", "log", "list"):
+            self._set_numbers(spacing, float(vary.values[0]), float(vary.values[-1]), len(vary.values))
+            if self._makes(vary):
+                break
         self._show_rows()
+
+    def _makes(self, vary: Vary) -> bool:
+        try:
+            return self.vary() == vary
+        except ParamError:
+            return False
 
     @property
     def choice(self) -> AxisChoice:
@@ -330,14 +334,7 @@ def usual_range(field: Field) -> tuple[float, float, Spacing]:
     return low, high, "log" if field.knob.log else "even"
 
 
-def is_range(field: Field, values: tuple[Any, ...], *, log: bool) -> bool:
-    """Whether values are what ``spread`` makes of the first, the last and their number."""
-    try:
-        return spread(field, values[0], values[-1], len(values), log=log) == values
-    except ParamError:
-        return False
-
-
 def written(values: tuple[Any, ...]) -> str:
     """Return numbers as a list that can be read again."""
-    return ", ".join(f"{value:.12g}" for value in values)
+    texts = ((f"{value:.12g}", value) for value in values)
+    return ", ".join(text if float(text) == value else repr(value) for text, value in texts)
