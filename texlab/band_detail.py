@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from texlab.theme import Theme
 
-ROOM_FOR_TABLE = 560
+ROOM_FOR_TABLE = 720
 ROOM_FOR_PLOT = 330
 
 
@@ -42,10 +42,10 @@ class BandDetail(QWidget):
         self.close_button.setAccessibleName("Close the large band")
         self.close_button.setToolTip("Back to the mosaics alone (Esc)")
         self.close_button.clicked.connect(self.closed)
-        link = ViewLink()
+        self._link = ViewLink()
         self.panes = (
-            PicturePane("pyramid-detail-exemplar", "Band of the exemplar", link),
-            PicturePane("pyramid-detail-result", "Band of the result", link),
+            PicturePane("pyramid-detail-exemplar", "Band of the exemplar", self._link),
+            PicturePane("pyramid-detail-result", "Band of the result", self._link),
         )
         for index, pane in enumerate(self.panes):
             pane.hovered.connect(lambda row, column, index=index: self._hover(index, row, column))
@@ -86,6 +86,9 @@ class BandDetail(QWidget):
         for pane, picture in zip(self.panes, shown.pictures, strict=True):
             pane.setVisible(picture is not None)
             pane.set_picture(picture)
+        # Both at one scale, the smaller one whole: the larger one can be panned.
+        sizes = [picture.shape for picture in shown.pictures if picture is not None]
+        self._link.set_extent(min(size[0] for size in sizes), min(size[1] for size in sizes))
         ticks = [(place, number(value)) for place, value in shown.scale.ticks()]
         self.bar.show_scale(band_table(shown.band), ticks)
         self.plot.show_comparison(shown.comparison, log=True)

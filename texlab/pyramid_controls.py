@@ -6,15 +6,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from texlab.recent import Recent, Same
+from texlab_core.errors import Cancelled
 from texlab_core.stats.bands import channel_names, projection, split
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.dock_frame import FramedDock
     from texlab.scene import Scene
     from texlab_core.stats.bands import Band, Channel, PyramidKind
     from texlab_core.steps import FloatImage
 
 TITLES: dict[PyramidKind, str] = {"steerable": "Steerable", "laplacian": "Laplacian", "gaussian": "Gaussian"}
+CACHE_BYTES = 96 * 2**20
 DEFAULT_SCALES, DEFAULT_ORIENTATIONS = 4, 4
 
 
@@ -28,19 +32,31 @@ class PyramidSettings:
 
 
 class BandCache:
-    """The subbands that were looked at last."""
+    """The subbands that were looked at last, bounded in bytes."""
 
     def __init__(self) -> None:
-        self._recent = Recent(8)
+        self._recent = Recent(CACHE_BYTES, lambda bands: sum(band.plane.nbytes for band in bands))
 
     def bands(
-        self, image: FloatImage, exemplar: FloatImage, channel: Channel, settings: PyramidSettings
+        self,
+        image: FloatImage,
+        exemplar: FloatImage,
+        channel: Channel,
+        settings: PyramidSettings,
+        should_stop: Callable[[], bool],
     ) -> tuple[Band, ...]:
-        """Return the subbands of an image's plane; principal axes are those of the exemplar."""
+        """Return the subbands of an image's plane; principal axes are those of the exemplar.
+
+        Raises ``Cancelled`` when ``should_stop`` says so.
+        """
+
+        def look() -> None:
+            if should_stop():
+                raise Cancelled
 
         def make() -> tuple[Band, ...]:
             plane = projection(exemplar, channel).plane(image)
-            return split(plane, settings.kind, settings.levels, settings.orientations)
+            return split(plane, settings.kind, settings.levels, settings.orientations, look)
 
         return self._recent.get((Same(image), Same(exemplar), channel, settings), make)
 
@@ -64,7 +80,7 @@ class PyramidControls:
         items = [(TITLES[kind], kind) for kind in kinds]
         self.kind = dock.add_choice("kind", "Pyramid", "Which pyramid splits the image", items, self._changed)
         tip = "Number of scales; follows the chosen column until it is changed here"
-        self.scales = dock.add_number("scales", "scales", tip, (1, 8), dock.ask)
+        self.scales = dock.add_number("scales", "scales", tip, (0, 8), dock.ask)
         tip = "Oriented bands per scale; follows the chosen column until it is changed here"
         self.orientations = dock.add_number("orientations", "orientations", tip, (1, 18), dock.ask)
         self._dock = dock

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,18 +120,16 @@ class PyramidPictures:
         should_stop
             Asked between the parts; raises ``Cancelled`` when it says so.
         """
-        bands = self._bands.bands(exemplar, exemplar, request.channel, request.settings)
-        _check(should_stop)
+        bands = self._bands.bands(exemplar, exemplar, request.channel, request.settings, should_stop)
         scales = band_scales(bands, request)
         first = self._mosaic(exemplar, bands, scales, request, dict(request.gains) if request.editing else {})
         _check(should_stop)
         if request.editing:
-            return PyramidAnswer(request, first, edited=self._edited(exemplar, request))
+            return PyramidAnswer(request, first, edited=self._edited(exemplar, request, should_stop))
         others: tuple[Band, ...] = ()
         second = None
         if result is not None:
-            others = self._bands.bands(result, exemplar, request.channel, request.settings)
-            _check(should_stop)
+            others = self._bands.bands(result, exemplar, request.channel, request.settings, should_stop)
             second = self._mosaic(result, others, scales, request, {})
         return PyramidAnswer(request, first, second, _large(bands, others, scales, request))
 
@@ -160,10 +159,18 @@ class PyramidPictures:
         # The bands are kept by the cache above, so their identity stands for image, plane and pyramid.
         return self._recent.get((Same(bands), tuple(scales.items()), looks), make)
 
-    def _edited(self, exemplar: FloatImage, request: PyramidRequest) -> tuple[Picture, Picture]:
+    def _edited(
+        self, exemplar: FloatImage, request: PyramidRequest, should_stop: Callable[[], bool]
+    ) -> tuple[Picture, Picture]:
         settings = request.settings
         changed = amplify(
-            exemplar, settings.kind, settings.levels, settings.orientations, dict(request.gains), request.channel
+            exemplar,
+            settings.kind,
+            settings.levels,
+            settings.orientations,
+            dict(request.gains),
+            request.channel,
+            partial(_check, should_stop),
         )
         return to_picture(exemplar), to_picture(np.clip(changed, 0, 1))
 

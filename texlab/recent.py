@@ -28,15 +28,19 @@ class Same:
 
 
 class Recent:
-    """Values by key, the most recently used ones."""
+    """Values by key, the most recently used ones, as many as weigh no more than ``capacity`` together."""
 
-    def __init__(self, capacity: int) -> None:
+    def __init__(self, capacity: float, weigh: Callable[[Any], float] | None = None) -> None:
         self._capacity = capacity
+        self._weigh = weigh or (lambda value: 1.0)
         self._values: OrderedDict[Hashable, Any] = OrderedDict()
         self._lock = threading.Lock()
 
     def get(self, key: Hashable, make: Callable[[], ValueT]) -> ValueT:
-        """Return the value of this key, making it (outside the lock) when it is not there."""
+        """Return the value of this key, making it (outside the lock) when it is not there.
+
+        The newest two values stay, whatever they weigh.
+        """
         with self._lock:
             if key in self._values:
                 self._values.move_to_end(key)
@@ -45,6 +49,7 @@ class Recent:
         made = make()
         with self._lock:
             kept: ValueT = self._values.setdefault(key, made)
-            while len(self._values) > self._capacity:
-                self._values.popitem(last=False)
+            weight = sum(self._weigh(value) for value in self._values.values())
+            while weight > self._capacity and len(self._values) > 2:
+                weight -= self._weigh(self._values.popitem(last=False)[1])
         return kept

@@ -110,3 +110,21 @@ def test_one_channel_leaves_the_others():
 def test_gaussian_cannot_be_collapsed():
     with pytest.raises(ValueError, match="cannot be collapsed"):
         bands.amplify(noise(8, 8, 1), "gaussian", 1, 1, {})
+
+
+def test_looks_between_the_bands():
+    class Stop(Exception):
+        pass
+
+    calls = []
+
+    def look():
+        calls.append(1)
+        if len(calls) == 3:
+            raise Stop
+
+    with pytest.raises(Stop):
+        bands.split(noise(16, 16), "steerable", 2, 4, look)
+    calls.clear()
+    with pytest.raises(Stop):
+        bands.amplify(noise(16, 16, 1), "steerable", 2, 4, {BandKey("highpass"): 2.0}, "luma", look)

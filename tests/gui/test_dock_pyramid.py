@@ -289,3 +289,10 @@ def test_a_theme_asks_for_mosaics_in_its_colours(dock, scene, qtbot):
             dock.set_theme(theme)
         answer = feed(dock, scene)
         assert "#{:02x}{:02x}{:02x}".format(*answer.exemplar.picture[0, 0]) == theme.canvas
+
+
+def test_no_scales_leave_the_residuals(dock, scene):
+    feed(dock, scene)
+    dock.pyramid.scales.setValue(0)
+    answer = feed(dock, scene)
+    assert [band.label for band in answer.exemplar.bands] == ["high", "low"]

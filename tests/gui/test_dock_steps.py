@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dock_scenes import check_controls, column_of, feed, frames, noise, scene_of, shown
+from dock_scenes import check_controls, column_of, feed, frames, hover, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
 from texlab.docks.steps import StepsDock
@@ -95,3 +95,9 @@ def test_nothing_to_play(dock, qtbot):
     assert not dock.playing
     assert feed(dock, scene_of(column_of(noise(), title="MSG"))) is None
     assert dock.message == "MSG keeps no stages."
+
+
+def test_value_under_the_cursor(dock, qtbot):
+    feed(dock, scene(3))
+    hover(qtbot, dock.pane, 7, 20)
+    assert dock.readout.text() == "20, 7   RGB 0.098 0.098 0.098"

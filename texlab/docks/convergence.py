@@ -179,8 +179,9 @@ class ConvergenceDock(FramedDock):
         if selected is None or not own:
             if selected is not None and selected.result is not None:
                 self.why = f"{selected.title} records no curves."
-            replace_items(self.curve, [])
+            self.controls.hide()
             return None
+        self.controls.show()
         replace_items(self.curve, [(each.title, name) for name, each in own.items()])
         chosen = self.curve.currentData()
         overlaid = tuple(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from texlab.scene import Scene
     from texlab.theme import Theme
+    from texlab_core.stats.bands import Band
     from texlab_core.steps import FloatImage
     from texlab_core.transforms.steerable import BandKey
 
@@ -37,32 +38,50 @@ class HistogramSettings:
 
 
 def comparisons(
-    exemplar: FloatImage, result: FloatImage | None, settings: HistogramSettings, cache: BandCache
+    exemplar: FloatImage,
+    result: FloatImage | None,
+    settings: HistogramSettings,
+    cache: BandCache,
+    should_stop: Callable[[], bool],
 ) -> tuple[Comparison, ...]:
     """Compare the pixels, or one subband, of every plane that is asked for."""
-    return tuple(_compare_plane(exemplar, result, channel, settings, cache) for channel in settings.channels)
+    return tuple(
+        _compare_bands(exemplar, result, channel, settings.pyramid, settings.band, cache, should_stop)
+        if settings.pyramid is not None and settings.band is not None
+        else _compare_pixels(exemplar, result, channel)
+        for channel in settings.channels
+    )
 
 
-def _compare_plane(
+def _compare_pixels(exemplar: FloatImage, result: FloatImage | None, channel: Channel) -> Comparison:
+    view = projection(exemplar, channel)
+    other = None if result is None else view.plane(result)
+    limits = None if channel.startswith("axis") else (0.0, 1.0)
+    return compare(_plane_title(exemplar, channel), view.plane(exemplar), other, limits=limits)
+
+
+def _compare_bands(
     exemplar: FloatImage,
     result: FloatImage | None,
     channel: Channel,
-    settings: HistogramSettings,
+    pyramid: PyramidSettings,
+    key: BandKey,
     cache: BandCache,
+    should_stop: Callable[[], bool],
 ) -> Comparison:
-    title = "gray" if exemplar.shape[2] == 1 else channel
-    if settings.pyramid is None or settings.band is None:
-        view = projection(exemplar, channel)
-        other = None if result is None else view.plane(result)
-        limits = None if channel.startswith("axis") else (0.0, 1.0)
-        return compare(title, view.plane(exemplar), other, limits=limits)
-    pyramid, key = settings.pyramid, settings.band
-    first = {band.key: band for band in cache.bands(exemplar, exemplar, channel, pyramid)}
-    second = {} if result is None else {band.key: band for band in cache.bands(result, exemplar, channel, pyramid)}
+    def bands(image: FloatImage) -> dict[BandKey, Band]:
+        return {band.key: band for band in cache.bands(image, exemplar, channel, pyramid, should_stop)}
+
+    first = bands(exemplar)
+    second = {} if result is None else bands(result)
     # A small image has fewer levels than were asked for: its residual stands for those that it lacks.
     found = first.get(key, next(reversed(first.values())))
     other = second[found.key].plane if found.key in second else None
-    return compare(f"{title}, {found.title}", found.plane, other)
+    return compare(f"{_plane_title(exemplar, channel)}, {found.title}", found.plane, other)
+
+
+def _plane_title(exemplar: FloatImage, channel: Channel) -> str:
+    return "gray" if exemplar.shape[2] == 1 else channel
 
 
 class HistogramsDock(FramedDock):
@@ -128,7 +147,7 @@ class HistogramsDock(FramedDock):
         cache = self._cache
 
         def compute(should_stop: Callable[[], bool]) -> tuple[Comparison, ...]:
-            return comparisons(exemplar, result, settings, cache)
+            return comparisons(exemplar, result, settings, cache, should_stop)
 
         return Question((self.name, Same(exemplar), Same(result), settings), compute)
 

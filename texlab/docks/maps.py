@@ -132,8 +132,9 @@ class MapsDock(FramedDock):
         if column is None or result is None or not result.maps:
             finished = column is not None and result is not None
             self.why = f"{column.title} records no maps." if column is not None and finished else ""
-            replace_items(self.chooser, [])
+            self.controls.hide()
             return None
+        self.controls.show()
         replace_items(self.chooser, [(each.title, name) for name, each in result.maps.items()])
         name = self.chooser.currentData()
         shown = result.maps[name]

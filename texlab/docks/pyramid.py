@@ -49,7 +49,7 @@ class PyramidDock(FramedDock):
 
     def build(self) -> None:
         """Make the controls, the mosaics, the large band and the reconstruction."""
-        self._pictures = PyramidPictures(BandCache(), Recent(4))
+        self._pictures = PyramidPictures(BandCache(), Recent(2))
         self._selected: BandKey | None = None
         self._gains: dict[BandKey, float] = {}
         self._asked_columns = 0

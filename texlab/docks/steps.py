@@ -56,7 +56,9 @@ class StepsDock(FramedDock):
         self.add_control(
             self.label, "label", "Name of the stage", "The stage that is shown and how many there are"
         )
+        self.readout = self.add_readout()
         self.pane = PicturePane("steps-pane", "Picture of the stage")
+        self.pane.hovered.connect(self._hover)
         layout = QVBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self.pane)
@@ -71,7 +73,9 @@ class StepsDock(FramedDock):
         column = scene.selected
         if column is None or not column.frames:
             self.why = "" if column is None or column.result is None else f"{column.title} keeps no stages."
+            self.controls.hide()
             return None
+        self.controls.show()
         answer = (column.id, column.frames)
 
         def compute(should_stop: Callable[[], bool]) -> tuple[int, tuple[Frame, ...]]:
@@ -145,3 +149,11 @@ class StepsDock(FramedDock):
             frame = self._frames[place]
             self.pane.set_picture(frame.picture)
             self.label.setText(f"{frame.name}   {place + 1} of {len(self._frames)}")
+
+    def _hover(self, row: int, column: int) -> None:
+        picture = self.pane.picture
+        if picture is None or row < 0:
+            self.readout.setText("")
+            return
+        numbers = " ".join(f"{value / 255:.3f}" for value in picture[row, column])
+        self.readout.setText(f"{column}, {row}   RGB {numbers}")

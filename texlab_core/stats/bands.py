@@ -15,7 +15,7 @@ from texlab_core.transforms import gaussian, laplacian, steerable
 from texlab_core.transforms.steerable import BandKey
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -27,6 +27,10 @@ CHANNELS: tuple[Channel, ...] = get_args(Channel)
 
 # ITU-R BT.601, for values as stored.
 LUMA = (0.299, 0.587, 0.114)
+
+
+def _go_on() -> None:
+    """Do not stop."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,7 +119,13 @@ def most_levels(size: Sequence[int], kind: PyramidKind) -> int:
     return steerable.max_levels(size) if kind == "steerable" else gaussian.max_levels(size)
 
 
-def split(plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientations: int) -> tuple[Band, ...]:
+def split(
+    plane: NDArray[np.float32],
+    kind: PyramidKind,
+    levels: int,
+    orientations: int,
+    look: Callable[[], None] = _go_on,
+) -> tuple[Band, ...]:
     """Split a plane into its subbands, from fine to coarse; fewer levels when the plane is too small.
 
     Parameters
@@ -126,15 +136,31 @@ def split(plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientatio
         ``gaussian`` gives the plane itself and ``levels`` reductions of it.
     levels, orientations
         Levels besides the residuals; orientations matter to the steerable pyramid only.
+    look
+        Called between the bands of a steerable pyramid; may raise to stop.
     """
     levels = min(levels, most_levels(plane.shape, kind))
     planes: Sequence[NDArray[np.float32]]
     if kind == "steerable":
-        planes = [each for _, each in steerable.build_reflected(plane, levels, orientations).items()]
+        planes = _reflected_bands(plane, levels, orientations, look)
     else:
         planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels)
     keys = band_keys(kind, levels, orientations)
     return tuple(Band(key, each, *names(key, kind, orientations)) for key, each in zip(keys, planes, strict=True))
+
+
+def _reflected_bands(
+    plane: NDArray[np.float32], levels: int, orientations: int, look: Callable[[], None]
+) -> list[NDArray[np.float32]]:
+    """Return the bands of ``steerable.build_reflected``, one after the other."""
+    mirrored = steerable.mirror(plane)
+    transform = steerable.Transform.of(mirrored, levels, orientations)
+    spectrum = transform.forward(mirrored)
+    planes = []
+    for key in transform.keys:
+        look()
+        planes.append(steerable.quadrant(transform.band(spectrum, key), plane.shape, key.level))
+    return planes
 
 
 def band_keys(kind: PyramidKind, levels: int, orientations: int) -> tuple[BandKey, ...]:
@@ -165,6 +191,7 @@ def amplify(
     orientations: int,
     gains: Mapping[BandKey, float],
     channel: Channel = "luma",
+    look: Callable[[], None] = _go_on,
 ) -> FloatImage:
     """Return the image with its subbands multiplied by gains.
 
@@ -180,6 +207,8 @@ def amplify(
         By place; 1 where nothing is said. All 1 returns the image.
     channel
         ``luma`` treats all channels alike; else only the part of the colours along that channel or axis.
+    look
+        Called between the bands of a steerable pyramid; may raise to stop.
 
     Returns
     -------
@@ -198,16 +227,21 @@ def amplify(
     levels = min(levels, most_levels(image.shape, kind))
     if channel == "luma":
         planes = [np.ascontiguousarray(image[..., each]) for each in range(image.shape[2])]
-        changed = [_collapse_amplified(plane, kind, levels, orientations, gains) for plane in planes]
+        changed = [_collapse_amplified(plane, kind, levels, orientations, gains, look) for plane in planes]
         return np.stack(changed, axis=-1)
     view = projection(image, channel)
     plane = view.plane(image)
-    change = _collapse_amplified(plane, kind, levels, orientations, gains) - plane
+    change = _collapse_amplified(plane, kind, levels, orientations, gains, look) - plane
     return image + change[..., None] * view.back.astype(np.float32)
 
 
 def _collapse_amplified(
-    plane: NDArray[np.float32], kind: PyramidKind, levels: int, orientations: int, gains: Mapping[BandKey, float]
+    plane: NDArray[np.float32],
+    kind: PyramidKind,
+    levels: int,
+    orientations: int,
+    gains: Mapping[BandKey, float],
+    look: Callable[[], None],
 ) -> NDArray[np.float32]:
     if kind == "laplacian":
         planes = laplacian.build(plane, levels)
@@ -219,6 +253,7 @@ def _collapse_amplified(
     spectrum = transform.forward(mirrored)
     total = transform.empty_sum()
     for key in transform.keys:
+        look()
         if gain := gains.get(key, 1.0):
             transform.add(total, key, transform.band(spectrum, key) * np.float32(gain))
     height, width = plane.shape
