@@ -38,6 +38,8 @@ def execute(args: argparse.Namespace) -> int:
         args.gallery = find_entry(args.gallery).name
     require_qt()
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    # This platform warns of window hints that it has no use for.
+    os.environ.setdefault("QT_LOGGING_RULES", "default.warning=false")
     from texlab.app import screenshot
 
     return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery)

@@ -1,0 +1,99 @@
+"""``gui`` and ``screenshot``: what they hand to the window, and a real picture of it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from texlab_core.image_files import read_image
+
+if TYPE_CHECKING:
+    from tests.cli.conftest import Texlab
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What the window was asked for."""
+    import texlab.app
+
+    seen: list[Any] = []
+
+    def screenshot(out: Path, **options: Any) -> int:
+        seen.append((out, options))
+        return 0
+
+    def run_gui(image: str | None) -> int:
+        seen.append(image)
+        return 0
+
+    monkeypatch.setattr(texlab.app, "run_gui", run_gui)
+    monkeypatch.setattr(texlab.app, "screenshot", screenshot)
+    return seen
+
+
+@pytest.mark.parametrize(("arguments", "image"), [([], None), (["gui"], None), (["gui", "wall.png"], "wall.png")])
+def test_the_window_opens_with_or_without_an_image(
+    texlab: Texlab, calls: list[Any], arguments: list[str], image: str | None
+) -> None:
+    assert texlab(*arguments).code == 0
+    assert calls == [image]
+
+
+def test_a_missing_library_is_said_in_one_sentence(texlab: Texlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "PySide6.QtWidgets", None)
+    shown = texlab("gui")
+    assert shown.code == 2
+    assert shown.err.startswith("texlab: The window needs Qt, which cannot be loaded (")
+    assert shown.err.count("\n") == 1
+
+
+def test_a_screenshot_has_width_first_and_a_known_texture(texlab: Texlab, calls: list[Any]) -> None:
+    options = ("--size", "1000x700", "--theme", "light", "--gallery", "gallery:oriented-zebra")
+    assert texlab("screenshot", "--out", "a.png", *options).code == 0
+    assert calls == [(Path("a.png"), {"size": (1000, 700), "theme": "light", "gallery": "oriented-zebra"})]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--out", "a.jpg"], "out: must be a file name that ends in .png"),
+        (["--out", "no/a.png"], "The folder no does not exist"),
+        (["--out", "a.png", "--size", "big"], "size: must be"),
+        (["--out", "a.png", "--gallery", "oriented-zebr"], "did you mean oriented-zebra"),
+        (["--out", "a.png", "--theme", "pink"], "invalid choice"),
+    ],
+)
+def test_mistakes_are_refused_before_the_window_is_made(
+    texlab: Texlab, calls: list[Any], arguments: list[str], words: str
+) -> None:
+    shown = texlab("screenshot", *arguments)
+    assert (shown.code, calls) == (2, [])
+    assert words in shown.err
+    assert shown.err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_the_real_window_is_drawn_off_screen(tmp_path: Path) -> None:
+    without = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM", "QT_LOGGING_RULES"}
+    environment = {name: value for name, value in os.environ.items() if name not in without}
+    command = [sys.executable, "-m", "texlab", "screenshot", "--out", str(tmp_path / "window.png")]
+    done = subprocess.run(
+        [*command, "--size", "1100x750", "--gallery", "oriented-zebra"],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    window = read_image(tmp_path / "window.png", "window").values
+    assert window.shape[:2] == (750, 1100)
+    # The zebra is black and white on a dark window: its columns hold far more contrast than the window's frame.
+    middle = window[200:400, 300:800, :3].astype(np.float64)
+    assert middle.std() > 40
+    assert np.median(window[..., :3]) < 80
