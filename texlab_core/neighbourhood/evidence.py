@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.stats.copying import continuous_share, copied_regions_steps, largest_copy
+from texlab_core.stats.copying import continuous_share, copied_regions_steps
 from texlab_core.steps import Curve, Map, Output, Step
 
 if TYPE_CHECKING:
@@ -55,7 +55,10 @@ def report(
         if given is not None:
             image[part] = np.where(places[..., None] < 0, given[part], image[part])
         yield Step(last.done, last.total, "measuring", preview=last.preview, state=last.state)
-    labelling = copied_regions_steps(source)
+    filled = canvas.order > 0
+    # Only what was filled counts as copied: what was given is no work of the method.
+    copied = np.where(filled[..., None], source, np.int32(-1))
+    labelling = copied_regions_steps(copied)
     while True:
         try:
             next(labelling)
@@ -63,7 +66,6 @@ def report(
             labels, sizes = end.value
             break
         yield Step(last.done, last.total, "measuring", preview=last.preview, state=last.state)
-    filled = canvas.order > 0
     distances = canvas.d_min[filled]
     by_order = distances[np.argsort(canvas.order[filled])]
     unit = UNITS[grown.matching.criterion]
@@ -78,8 +80,7 @@ def report(
             "copied": Map(labels, "label", "Areas copied in one piece"),
         },
         curves=_curves(by_order, levels, unit),
-        measures=_measures(grown, by_order, levels, sizes)
-        | {"continuous-share": continuous_share(source), "largest-copy": largest_copy(sizes)},
+        measures=_measures(grown, by_order, levels) | _copying(filled, copied, sizes),
         notes=_notes(grown),
         details=grown,
     )
@@ -104,9 +105,7 @@ def _curves(distances: NDArray[np.float32], levels: NDArray[np.float32], unit: s
     return curves
 
 
-def _measures(
-    grown: Grown, distances: NDArray[np.float32], levels: NDArray[np.float32], sizes: NDArray[np.int64]
-) -> dict[str, float]:
+def _measures(grown: Grown, distances: NDArray[np.float32], levels: NDArray[np.float32]) -> dict[str, float]:
     """Return copying (d_min = 0) and doubt (d_min over the exemplar's own level, repetition of sources)."""
     measures: dict[str, float] = {}
     if levels.size:
@@ -121,6 +120,21 @@ def _measures(
     if level > 0:
         measures["distance-over-level"] = measures["distance"] / level
     return measures
+
+
+def _copying(filled: NDArray[np.bool_], source: NDArray[np.int32], sizes: NDArray[np.int64]) -> dict[str, float]:
+    """Return how much of what was filled continues its neighbour, and the largest area copied in one piece."""
+    height, width = filled.shape
+    pairs = np.count_nonzero(filled[1:] & filled[:-1]) + np.count_nonzero(filled[:, 1:] & filled[:, :-1])
+    count = int(filled.sum())
+    if pairs == 0:
+        return {}
+    all_pairs = (height - 1) * width + height * (width - 1)
+    largest = int(sizes[1]) if sizes.size > 1 else 1
+    return {
+        "continuous-share": continuous_share(source) * all_pairs / pairs,
+        "largest-copy": largest / count,
+    }
 
 
 def _notes(grown: Grown) -> tuple[str, ...]:

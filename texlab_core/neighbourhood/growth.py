@@ -144,6 +144,7 @@ class Growth:
                 if self.row >= height:
                     return False
                 self.queue, self.row = raster_rows(status, self.row)
+                self.search.numbers[POSITION] = 0
                 yield self.step()
             else:
                 self._raise_limit()
@@ -154,10 +155,10 @@ class Growth:
                 )
                 queue = yield from self._watched(finding)
                 self.queue, self.started = queue, True
+                self.search.numbers[POSITION] = 0
                 self.filled_before_layer = self._filled()
                 if len(queue) == 0:
                     return False
-            self.search.numbers[POSITION] = 0
         return True
 
     def _watched(

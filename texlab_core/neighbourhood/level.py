@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.neighbourhood.growth import PORTION_S, empty_canvas, make_rule, make_search
+from texlab_core.neighbourhood.growth import empty_canvas, make_rule, make_search
 from texlab_core.neighbourhood.windows import make_window
 
 if TYPE_CHECKING:
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from texlab_core.neighbourhood.windows import Matching
 
 SAMPLES_PER_SIDE = 10
-_BUDGET = int(PORTION_S * 1e10)
+# Units of work per portion, a few milliseconds.
+_BUDGET = 40_000_000
 
 
 def leave_one_out(

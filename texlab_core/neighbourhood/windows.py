@@ -126,7 +126,7 @@ def integer_weights(
         return np.ones(len(places), np.int32)
     gaussian = np.exp(-np.sum(places**2, axis=1) / (2.0 * (window / 6.4) ** 2))
     largest = LARGEST_SUM // channels
-    low, high = 1, largest
+    low, high = 1, 64 * largest
     while low < high:
         scale = (low + high + 1) // 2
         if _rounded(gaussian, scale).sum() <= largest:
