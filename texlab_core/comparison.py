@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from texlab_core.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.registry import find_method, methods
-from texlab_core.run import MAX_SEED, Job, run
+from texlab_core.run import MAX_SEED, Job, check_seed, run
 from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
 
 if TYPE_CHECKING:
@@ -111,13 +111,14 @@ def plan(
     """
     if not names:
         raise InputError(f"methods: must name at least one of {', '.join(methods())}.")
+    first = check_seed(seed)
     return tuple(
         Job(
             method=name,
             inputs={"exemplar": exemplar},
             params=(params or {}).get(name),  # type: ignore[arg-type]  # None takes the defaults
             size=exemplar.size if size is None else size,
-            seed=seed if same_phase else (seed + index) % (MAX_SEED + 1),
+            seed=first if same_phase else (first + index) % (MAX_SEED + 1),
         )
         for index, name in enumerate(names)
     )

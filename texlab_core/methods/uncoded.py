@@ -48,16 +48,14 @@ def analyze(inputs: Inputs, params: UncodedParams) -> Generator[Step, None, Spot
     pixels = exemplar_of(inputs).pixels
     stages = {f"channel {channel + 1}": 1.0 for channel in range(pixels.shape[2])}
     progress = Progress(stages)
-    spot = yield from make_spot(pixels, params.border == "periodic", progress, "channel")
-    yield progress.at(list(stages)[-1])
-    return spot
+    return (yield from make_spot(pixels, params.border == "periodic", progress, "channel"))
 
 
 def synthesize(
     model: Spot, inputs: Inputs, params: UncodedParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Give the exemplar's spectrum a random phase, then its histograms."""
-    from texlab_core.spectral.fourier import inverse, random_phase
+    from texlab_core.spectral.fourier import blocks, inverse, random_phase
     from texlab_core.spectral.uncoded import give_phase, parameter_count, spectra
     from texlab_core.stats import histogram
 
@@ -69,27 +67,27 @@ def synthesize(
 
     phase = yield from random_phase(size, streams, progress, "phase")
     halves = yield from spectra(model, size, progress, "spectrum")
-    give_phase(halves, phase)
+    yield from give_phase(halves, phase, progress, f"spectrum {len(halves)}")
     height, width = size
-    image = np.empty((height, width, len(halves)), np.float32)
+    planes = []
     for channel, half in enumerate(halves):
         half[0, 0] = model.mean[channel] * height * width
-        image[:, :, channel] = yield from inverse(half, size, progress, f"transform {channel + 1}")
-    yield progress.at(f"transform {len(halves)}", preview=lambda: np.clip(image, 0, 1))
+        planes.append((yield from inverse(half, size, progress, f"transform {channel + 1}")))
+    yield progress.at(f"transform {len(halves)}", preview=lambda: np.clip(np.stack(planes, axis=2), 0, 1))
 
     pixels = exemplar_of(inputs).pixels
-    matched: FloatImage = np.empty_like(image)
-    for channel in channels:
+    image: FloatImage = np.empty((height, width, len(planes)), np.float32)
+    for channel, plane in enumerate(planes):
         stage = f"histogram {channel + 1}"
-        plane = np.ascontiguousarray(image[:, :, channel])
         target = histogram.sorted_sample(pixels[:, :, channel])
         yield progress.at(stage, 0.3)
         for _ in histogram.match_ranks_in_place(plane, target, streams.key("ties", channel)):
             yield progress.at(stage, 0.6)
-        matched[:, :, channel] = plane
-        yield progress.at(stage)
+        for rows in blocks(height, width):
+            image[rows, :, channel] = plane[rows]
+            yield progress.at(stage, 0.6 + 0.4 * rows.stop / height)
     return Output(
-        image=matched, measures={"parameters": float(parameter_count(model.planes.shape[1:], len(halves)))}
+        image=image, measures={"parameters": float(parameter_count(model.planes.shape[1:], len(halves)))}
     )
 
 

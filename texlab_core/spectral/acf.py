@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.blas import one_blas_thread
 from texlab_core.spectral.fourier import Floats, Half, Plane, blocks, column_weights, forward
 
 if TYPE_CHECKING:
@@ -52,8 +51,9 @@ def measure(plane: Plane, progress: Progress, transform: str, stage: str) -> Gen
     for rows in blocks(height, half.shape[1], 2**17):
         part = half[rows].astype(np.complex128)
         power = np.square(part.real) + np.square(part.imag)
-        with one_blas_thread():
-            values += (along_v[rows].T @ (power @ along_u)).real
+        for column, wave in enumerate(along_u.T):
+            lag = (power * wave).sum(axis=1)
+            values[:, column] += (along_v[rows] * lag[:, None]).sum(axis=0).real
         yield progress.at(stage, rows.stop / height)
     return Acf(values / float(height * width) ** 2, mean)
 
@@ -62,8 +62,10 @@ def spectrum(acf: Acf, size: tuple[int, int], rows: slice) -> Floats:
     """Return the power per pixel that the samples stand for, on rows of the half plane; it may be negative."""
     height, width = size
     along_v, along_u = _waves(height)[rows], _waves(width)[: width // 2 + 1].T
-    with one_blas_thread():
-        power: Floats = (along_v @ (acf.values @ along_u)).real
+    power = np.zeros((along_v.shape[0], along_u.shape[1]))
+    # Term by term: the order of the sum does not depend on a library's threads.
+    for wave, samples in zip(along_v.T, acf.values, strict=True):
+        power += np.multiply.outer(wave, (samples[:, None] * along_u).sum(axis=0)).real
     return power
 
 

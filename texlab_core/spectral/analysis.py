@@ -7,13 +7,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from texlab_core.blas import one_blas_thread
-from texlab_core.spectral.bank import CHANNELS, WHITE_BANDWIDTHS, channel_profiles, mirrored, residual_reach
+from texlab_core.spectral.bank import (
+    CHANNELS,
+    MIRRORED_U,
+    MIRRORED_V,
+    PROFILE_U,
+    PROFILE_V,
+    WHITE_BANDWIDTHS,
+    distinct_profiles,
+    mirrored,
+    residual_reach,
+)
 from texlab_core.spectral.code import MsgCode, Residual, channels
 from texlab_core.spectral.digits import keep_digits
 from texlab_core.spectral.fourier import Floats, Half, Plane, blocks, forward, self_conjugate_columns
@@ -25,8 +33,6 @@ if TYPE_CHECKING:
     from texlab_core.spectral.progress import Progress
     from texlab_core.spectral.tone import Tone
     from texlab_core.steps import Step
-
-Profile: TypeAlias = NDArray[np.floating]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,34 +102,34 @@ def channel_marginals(half: Half, width: int, progress: Progress, stage: str) ->
     """Return the marginal power spectra of the 16 channels from the half plane of a real image.
 
     Every sum over the whole plane is taken over the half plane and its mirror image, and every filter is a product
-    of two profiles, so that two products of matrices do all of it.
+    of two profiles out of 20.
     """
-    height = half.shape[0]
-    gain_u, gain_v = channel_profiles(width, vertical=False), channel_profiles(height, vertical=True)
-    columns = half.shape[1]
-    mirror_u, mirror_v = mirrored(gain_u), mirrored(gain_v)
-    inner = np.ones(columns)
-    inner[list(self_conjugate_columns(width))] = 0
-    over_v = np.concatenate([gain_v, mirror_v]).astype(np.float32)
-    over_u = np.concatenate([gain_u[:, :columns], mirror_u[:, :columns] * inner]).T.astype(np.float32)
+    from texlab_core.kernels import gabor
 
-    along_u = np.zeros((2 * CHANNELS, columns))
-    along_v = np.empty((2 * CHANNELS, height))
+    height, columns = half.shape
+    profiles_v, ends_v = distinct_profiles(height)
+    profiles_u, ends_u = distinct_profiles(width)
+    half_u = np.ascontiguousarray(profiles_u[:, :columns])
+    inner_u = half_u.copy()
+    # The columns that are their own mirror images count once.
+    inner_u[:, list(self_conjugate_columns(width))] = 0
+    along_u, along_v = np.zeros_like(half_u), np.empty((len(half_u), height))
     for rows in blocks(height, columns, 2**18):
-        part = half[rows]
-        power = np.square(part.real)
-        power += np.square(part.imag)
-        with one_blas_thread():
-            along_u += over_v[:, rows] @ power
-            along_v[:, rows] = (power @ over_u).T
+        gabor.marginals(
+            half[rows], rows.start, profiles_v, inner_u, ends_v, np.minimum(ends_u, columns), along_u, along_v
+        )
         yield progress.at(stage, rows.stop / height)
 
-    scale = 1 / (height * width) ** 2
     u = np.empty((CHANNELS, width))
-    u[:, :columns] = along_u[:CHANNELS]
+    u[:, :columns] = along_u[PROFILE_V]
     # Negative u: power(-u, v) = power(u, -v).
-    u[:, columns:] = along_u[CHANNELS:, (width - 1) // 2 : 0 : -1]
-    v = along_v[:CHANNELS] + mirrored(along_v[CHANNELS:])
+    u[:, columns:] = along_u[MIRRORED_V, (width - 1) // 2 : 0 : -1]
+    v = along_v[PROFILE_U] + mirrored(along_v[MIRRORED_U])
+    for column in self_conjugate_columns(width):
+        alone = half[:, column].astype(np.complex128)
+        v += half_u[PROFILE_U, column, None] * (alone.real**2 + alone.imag**2)
+    scale = 1 / float(height * width) ** 2
+    gain_u, gain_v = profiles_u[PROFILE_U], profiles_v[PROFILE_V]
     return Marginals(u * gain_u * scale, v * gain_v * scale)
 
 

@@ -73,6 +73,32 @@ def power_profile(axis: Floats, centre: Floats, width: Floats) -> Floats:
     return profile
 
 
+# The 16 filters and their mirror images are products of only 20 profiles: 5 places on an axis for each octave.
+_PLACES = np.array([-1, -math.sqrt(0.5), 0, math.sqrt(0.5), 1])
+PROFILE_CENTRES = _frozen(np.outer(CENTRE_FREQUENCIES, _PLACES).reshape(-1))
+PROFILE_WIDTHS = _frozen(np.repeat(WIDTH_RATIO * CENTRE_FREQUENCIES, len(_PLACES)))
+_OCTAVE = np.repeat(np.arange(OCTAVES), ORIENTATIONS) * len(_PLACES)
+PROFILE_U = _OCTAVE + np.tile([4, 3, 2, 1], OCTAVES)
+PROFILE_V = _OCTAVE + np.tile([2, 3, 4, 3], OCTAVES)
+MIRRORED_U = _OCTAVE + np.tile([0, 1, 2, 3], OCTAVES)
+MIRRORED_V = _OCTAVE + np.tile([2, 1, 0, 1], OCTAVES)
+# Beyond so many widths from its centre a squared filter is below 1e-15.
+_REACH = 2.35
+
+
+@functools.lru_cache(maxsize=32)
+def distinct_profiles(count: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the (20, count) distinct profiles on an axis in FFT order, and from which index their octave ends.
+
+    Both are read-only. From ``end`` to ``count - end`` all profiles of the same octave are negligible.
+    """
+    profiles = _frozen(power_profile(frequencies(count), PROFILE_CENTRES, PROFILE_WIDTHS))
+    highest = np.repeat(CENTRE_FREQUENCIES, len(_PLACES))
+    ends = np.ceil((highest + _REACH * PROFILE_WIDTHS) * count).astype(np.int64) + 1
+    ends.flags.writeable = False
+    return profiles, ends
+
+
 @functools.lru_cache(maxsize=32)
 def channel_profiles(count: int, vertical: bool) -> Floats:
     """Return the (16, count) factors of the squared filters along one axis, in FFT order, read-only."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.blas import one_blas_thread
 from texlab_core.spectral.fourier import Floats, Half, Plane, blocks, inverse
 
 if TYPE_CHECKING:
@@ -70,6 +69,8 @@ def fit(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, C
     plane
         (H, W) float32 in gray levels. Planes too small for that are taken as periodic.
     """
+    from texlab_core.kernels import gabor
+
     mean = float(plane.mean(dtype=np.float64))
     values = plane.astype(np.float64) - mean
     deviation = float(np.sqrt(np.square(values).mean()))
@@ -77,15 +78,11 @@ def fit(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, C
         values = np.pad(values, ((REACH, 0), (REACH, REACH)), mode="wrap")
     height, width = values.shape[0] - REACH, values.shape[1] - 2 * REACH
     products = np.zeros((COEFFICIENTS + 1, COEFFICIENTS + 1))
-    for rows in blocks(height, width, 2**14):
-        stack = np.empty((COEFFICIENTS + 1, (rows.stop - rows.start) * width))
-        for index, (dy, dx) in enumerate(((0, 0), *OFFSETS)):
-            top, left = REACH + rows.start - dy, REACH - dx
-            part = values[top : top + rows.stop - rows.start, left : left + width]
-            stack[index] = part.reshape(-1)
-        with one_blas_thread():
-            products += stack @ stack.T
+    offsets = np.array([(0, 0), *OFFSETS])
+    for rows in blocks(height, width, 2**12):
+        gabor.covariances(values[rows.start : rows.stop + REACH], offsets, products)
         yield progress.at(stage, rows.stop / height)
+    products = np.triu(products) + np.triu(products, 1).T
     covariance, target = products[1:, 1:], products[1:, 0]
     ridge = _RIDGE * max(np.trace(covariance) / COEFFICIENTS, 1e-30)
     solved = np.linalg.solve(covariance + ridge * np.eye(COEFFICIENTS), target)
@@ -101,9 +98,11 @@ def transfer(model: Car, size: tuple[int, int], rows: slice) -> NDArray[np.compl
     u, v = np.arange(width // 2 + 1) / width, np.fft.fftfreq(height)[rows]
     along_u = np.exp(-2j * np.pi * np.outer(np.arange(-REACH, REACH + 1), u))
     along_v = np.exp(-2j * np.pi * np.outer(v, np.arange(REACH + 1)))
-    with one_blas_thread():
-        predicted: NDArray[np.complex128] = along_v @ (model.grid() @ along_u)
-    return 1 - predicted
+    value = np.ones((v.size, u.size), complex)
+    # Term by term: the order of the sum does not depend on a library's threads.
+    for wave, weights in zip(along_v.T, model.grid(), strict=True):
+        value -= np.multiply.outer(wave, (weights[:, None] * along_u).sum(axis=0))
+    return value
 
 
 def shape_noise(
@@ -170,8 +169,7 @@ def largest_pole(model: Car, progress: Progress, stage: str) -> Generator[Step, 
 def _pole_moduli(grid: Floats, angles: Floats) -> Floats:
     """Return the largest modulus of the roots in the vertical variable for horizontal frequencies in radians."""
     shifts = np.exp(-1j * np.outer(np.arange(-REACH, REACH + 1), angles))
-    with one_blas_thread():
-        columns = grid @ shifts
+    columns = np.stack([(weights[:, None] * shifts).sum(axis=0) for weights in grid])
     companion = np.zeros((angles.size, REACH, REACH), complex)
     companion[:, 0, :] = (columns[1:] / (1 - columns[0])).T
     companion[:, np.arange(1, REACH), np.arange(REACH - 1)] = 1

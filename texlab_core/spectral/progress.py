@@ -36,6 +36,12 @@ class Progress:
         done = round(_UNITS * (low + (high - low) * fraction))
         return Step(min(done, _UNITS), _UNITS, stage, preview=preview)
 
+    def ended(self) -> Progress:
+        """Return one whose Steps all tell the end of their stage: for work whose length was not foreseen."""
+        other = Progress.__new__(Progress)
+        other._span = {name: (high, high) for name, (_, high) in self._span.items()}
+        return other
+
     def follow(
         self, fractions: Generator[float, None, ValueT], stage: str, low: float = 0.0, high: float = 1.0
     ) -> Generator[Step, None, ValueT]:

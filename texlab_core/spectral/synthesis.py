@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from texlab_core.blas import one_blas_thread
 from texlab_core.spectral.bank import (
     CENTRES_U,
     CENTRES_V,
@@ -37,6 +36,8 @@ if TYPE_CHECKING:
     from texlab_core.steps import Step
 
 Size: TypeAlias = tuple[int, int]
+# Share of a lobe's peak below which its rows are left out.
+_NEGLIGIBLE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,8 @@ class Design:
         The exact solution had negative energies, so that the nearest non-negative one was taken.
     imaginary
         How many synthesis bandwidths have no real solution.
+    lobes
+        The channels as products of profiles.
     """
 
     bandwidths_u: Floats
@@ -69,6 +72,7 @@ class Design:
     error: float
     clipped: bool
     imaginary: int
+    lobes: Lobes
 
 
 def synthesis_bandwidths(measured: Floats, equations: Equations = "corrected") -> tuple[Floats, NDArray[np.bool_]]:
@@ -127,15 +131,16 @@ class Lobes:
 
     def overlap(self) -> Floats:
         """Return the energy (16, 16) each filter passes of each channel of unit amplitude, less the residual."""
+        from texlab_core.kernels.gabor import overlaps
+
         height, width = self.size
         gain_u, gain_v = channel_profiles(width, vertical=False), channel_profiles(height, vertical=True)
         low_u, low_v = (_low(frequencies_count) for frequencies_count in (width, height))
         total: Floats = np.zeros((CHANNELS, CHANNELS))
-        with one_blas_thread():
-            for u, v in ((self.u, self.v), (mirrored(self.u), mirrored(self.v))):
-                total += (gain_u @ u.T) * (gain_v @ v.T)
-                # The low-pass residual is written over the channels.
-                total -= (gain_u[:, low_u] @ u[:, low_u].T) * (gain_v[:, low_v] @ v[:, low_v].T)
+        for u, v in ((self.u, self.v), (mirrored(self.u), mirrored(self.v))):
+            total += overlaps(gain_u, u) * overlaps(gain_v, v)
+            # The low-pass residual is written over the channels.
+            total -= overlaps(gain_u[:, low_u], u[:, low_u]) * overlaps(gain_v[:, low_v], v[:, low_v])
         return 2 * total / (height * width) ** 2
 
     def half_plane(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -170,7 +175,15 @@ def design(code: MsgCode, size: Size, equations: Equations = "corrected") -> Des
     total = float(wanted.sum())
     error = float(np.abs(achieved - wanted).sum() / total) if total > 0 else 0.0
     return Design(
-        bandwidths_u, bandwidths_v, solved, solved / unit, achieved, error, clipped=clipped, imaginary=imaginary
+        bandwidths_u,
+        bandwidths_v,
+        solved,
+        solved / unit,
+        achieved,
+        error,
+        clipped=clipped,
+        imaginary=imaginary,
+        lobes=lobes,
     )
 
 
@@ -219,7 +232,7 @@ def residual_energies(residual: Residual, size: Size) -> Floats:
     gain_u = channel_profiles(width, vertical=False)[:, _low(width)]
     gain_v = channel_profiles(height, vertical=True)[:, _low(height)]
     power = np.square(residual_modulus(residual, size))
-    energies: Floats = 2 * np.einsum("nv,vu,nu->n", gain_v, power, gain_u, optimize=True) / (height * width)
+    energies: Floats = 2 * np.einsum("nv,vu,nu->n", gain_v, power, gain_u) / (height * width)
     return energies
 
 
@@ -234,7 +247,7 @@ def synthesize_plane(
 ) -> Generator[Step, None, Plane]:
     """Return a plane of texture in gray levels, (H, W) float32, before the histogram step."""
     noise, mixing, transform = names
-    lobes = Lobes(plan.bandwidths_u, plan.bandwidths_v, size)
+    lobes = plan.lobes
     if phase == "one":
         half = yield from random_phase(size, streams, progress, noise)
         yield from _shape(half, lobes, plan.gains, progress, mixing)
@@ -248,12 +261,12 @@ def synthesize_plane(
 
 def _shape(half: Half, lobes: Lobes, gains: Floats, progress: Progress, stage: str) -> Generator[Step, None, None]:
     """Multiply a unit-modulus half plane by the root of the channels' summed power."""
+    from texlab_core.kernels import gabor
+
     factor_v, factor_u = lobes.half_plane()
     factor_u *= np.tile(gains, 2).astype(np.float32)[:, None]
     for rows in _rows(half):
-        with one_blas_thread():
-            power = factor_v[rows] @ factor_u
-        half[rows] *= np.sqrt(power, out=power)
+        gabor.shape(half[rows], rows.start, factor_v, factor_u, _NEGLIGIBLE)
         yield progress.at(stage, rows.stop / half.shape[0])
 
 

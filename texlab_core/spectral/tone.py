@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from texlab_core.blas import one_blas_thread
 from texlab_core.spectral.digits import keep_digits
 from texlab_core.spectral.fourier import Floats, Plane, blocks
 from texlab_core.spectral.marginal import (
@@ -179,8 +178,7 @@ def _moments(
     for rows in _pixel_blocks(pixels):
         flat = pixels[rows].reshape(-1, 3).astype(np.float64) - 0.5
         total += flat.sum(axis=0)
-        with one_blas_thread():
-            products += flat.T @ flat
+        products += [[np.sum(one * other) for other in flat.T] for one in flat.T]
         chroma += float(np.square(flat[:, :2] - flat[:, 1:]).sum())
         yield progress.at(stage, 0.25 * rows.stop / pixels.shape[0])
     count = pixels.shape[0] * pixels.shape[1]

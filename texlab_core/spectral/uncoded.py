@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.spectral.fourier import Floats, Half, Plane, blocks, forward, inverse, self_conjugate_columns
+from texlab_core.spectral.fourier import (
+    Floats,
+    Half,
+    Plane,
+    blocks,
+    forward,
+    inverse,
+    mean_square,
+    self_conjugate_columns,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -43,17 +52,25 @@ def make_spot(pixels: FloatImage, periodic: bool, progress: Progress, stage: str
 
     Reference: Moisan 2011, Periodic plus smooth image decomposition, eqs. 10 and 11.
     """
-    mean = pixels.mean(axis=(0, 1), dtype=np.float64)
-    planes = np.ascontiguousarray(np.moveaxis(pixels - mean.astype(np.float32), 2, 0))
-    if periodic:
-        for channel, plane in enumerate(planes):
-            half = yield from forward(plane, progress, f"{stage} {channel + 1}")
-            subtract_smooth(half, plane)
-            planes[channel] = yield from inverse(half, plane.shape, progress, f"{stage} {channel + 1}")
+    height, width, channels = pixels.shape
+    planes, mean = np.empty((channels, height, width), np.float32), np.zeros(channels)
+    for channel, plane in enumerate(planes):
+        name = f"{stage} {channel + 1}"
+        for rows in blocks(height, width):
+            plane[rows] = pixels[rows, :, channel]
+            mean[channel] += plane[rows].sum(dtype=np.float64) / plane.size
+            yield progress.at(name, 0.0)
+        plane -= np.float32(mean[channel])
+        yield progress.at(name, 0.0)
+        if periodic:
+            half = yield from forward(plane, progress, name)
+            yield from subtract_smooth(half, plane, progress, name)
+            planes[channel] = yield from inverse(half, plane.shape, progress.ended(), name)
+        yield progress.at(name)
     return Spot(planes, mean)
 
 
-def subtract_smooth(half: Half, plane: Plane) -> None:
+def subtract_smooth(half: Half, plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, None]:
     """Subtract from the spectrum of a plane that of its smooth component, in place.
 
     The jumps between opposite borders live on two lines: their spectrum takes one-dimensional transforms only.
@@ -71,6 +88,7 @@ def subtract_smooth(half: Half, plane: Plane) -> None:
         if rows.start == 0:
             jumps[0, 0] = 0
         half[rows] -= (jumps / laplacian).astype(half.dtype)
+        yield progress.at(stage)
 
 
 def spectra(
@@ -87,18 +105,11 @@ def spectra(
         found.append(half)
     if spot.planes.shape[1:] != size:
         # All channels alike, so that colours stay.
-        power = sum(float(np.square(half_energy(half, size[1]))) for half in found)
+        power = sum(mean_square(half, size[1]) for half in found)
         wanted = float(np.square(spot.planes, dtype=np.float64).sum() / spot.planes[0].size)
         for half in found:
             half *= np.float32(np.sqrt(wanted / power)) if power > 0 else np.float32(1)
     return found
-
-
-def half_energy(half: Half, width: int) -> float:
-    """Return the rms of the image whose half plane is given."""
-    from texlab_core.spectral.fourier import mean_square
-
-    return float(np.sqrt(mean_square(half, width)))
 
 
 def _laid(plane: Plane, size: tuple[int, int]) -> Plane:
@@ -124,7 +135,7 @@ def _fade(count: int) -> Plane:
     return window
 
 
-def give_phase(halves: list[Half], phase: Half) -> None:
+def give_phase(halves: list[Half], phase: Half, progress: Progress, stage: str) -> Generator[Step, None, None]:
     """Turn the spectra of all channels alike, in place, so that the phase of their sum is the given one.
 
     Reference: Galerne, Gousseau & Morel 2011, section 2.3: the channels keep their phase differences.
@@ -135,6 +146,7 @@ def give_phase(halves: list[Half], phase: Half) -> None:
         turn = phase[rows] * np.where(length > 0, np.conj(total) / np.where(length > 0, length, 1), 1)
         for half in halves:
             half[rows] *= turn
+        yield progress.at(stage)
 
 
 def parameter_count(size: tuple[int, int], channels: int) -> int:

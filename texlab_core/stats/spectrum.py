@@ -16,7 +16,6 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from texlab_core.blas import one_blas_thread
 from texlab_core.threads import workers
 
 if TYPE_CHECKING:
@@ -196,8 +195,7 @@ def _cells(spectrum: Spectrum, cells_v: int, cells_u: int) -> tuple[Floats, NDAr
     # Zero frequency holds no power and does not count.
     count = np.outer(over_v.sum(axis=1), over_u.sum(axis=1)) - np.outer(over_v[:, 0], over_u[:, 0])
     filled = count > 1e-9
-    with one_blas_thread():
-        total = over_v @ (spectrum.power @ over_u.T.astype(np.float32)).astype(np.float64)
+    total = over_v @ (spectrum.power @ over_u.T.astype(np.float32)).astype(np.float64)
     return np.divide(total, count, out=np.zeros_like(total), where=filled), filled
 
 

@@ -121,13 +121,15 @@ class GaborTransform:
     Parameters
     ----------
     plane
-        (H, W) float32, taken as periodic.
+        (H, W) float32, taken as periodic. Its mean belongs to the residual alone.
     """
 
     def __init__(self, plane: Plane) -> None:
         self.plane = plane
         self.size = (plane.shape[0], plane.shape[1])
-        self._spectrum: NDArray[Any] = scipy.fft.fft2(plane.astype(np.float32), workers=workers())
+        self.mean = float(plane.mean(dtype=np.float64))
+        centred = plane.astype(np.float32) - np.float32(self.mean)
+        self._spectrum: NDArray[Any] = scipy.fft.fft2(centred, workers=workers())
 
     def channel(self, channel: int) -> Response:
         """Return the answer of channel 4 p + q; its even part is what the paper's real filters give."""
@@ -138,7 +140,7 @@ class GaborTransform:
         """Return the low-pass residual, mean included."""
         gain_v, gain_u = _residual_profiles(self.size)
         # One lobe at zero frequency is the whole filter.
-        return 0.5 * self._filtered(gain_v, gain_u).even
+        return 0.5 * self._filtered(gain_v, gain_u).even + np.float32(self.mean)
 
     def reconstruction(self) -> Plane:
         """Return the sum of the even channels and the residual: nearly the image."""
@@ -148,7 +150,7 @@ class GaborTransform:
         filtered: NDArray[np.complex64] = scipy.fft.ifft2(
             self._spectrum * gain.astype(np.float32), workers=workers()
         )
-        return np.ascontiguousarray(filtered.real)
+        return filtered.real + np.float32(self.mean)
 
     def reconstruction_error(self) -> float:
         """Return the signal-to-noise ratio of the reconstruction of an image in [0, 1], in dB."""
@@ -162,8 +164,7 @@ class GaborTransform:
     def rms_table(self) -> NDArray[np.float64]:
         """Return the (4, 4) rms values of the even channels as percentages of the image's mean (table 2)."""
         rms = [math.sqrt(float(np.square(each.even, dtype=np.float64).mean())) for each in self.channels()]
-        mean = float(self.plane.mean(dtype=np.float64))
-        return 100 * np.array(rms).reshape(-1, ORIENTATIONS) / max(mean, 1e-12)
+        return 100 * np.array(rms).reshape(-1, ORIENTATIONS) / max(self.mean, 1e-12)
 
     def _filtered(self, gain_v: NDArray[np.float64], gain_u: NDArray[np.float64]) -> Response:
         # Twice one lobe is the analytic signal: its real part has both lobes.

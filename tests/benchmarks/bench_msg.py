@@ -1,0 +1,60 @@
+"""MSG in units of one transform pair of the same size, and how often an edited code is repainted."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import scipy.fft
+
+from tests.core.spectral_tools import ANY, analyzed, synthesized, texture
+from texlab_core.run import Job, run
+from texlab_core.spectral.codefile import code_input
+from texlab_core.spectral.progress import finish
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+pytestmark = pytest.mark.benchmark
+
+
+def cpu(work: Callable[[], Any], repeats: int) -> float:
+    """Return the least CPU time of one call over a few series, in seconds."""
+    work()
+    best = np.inf
+    for _ in range(7):
+        began = time.process_time()
+        for _ in range(repeats):
+            work()
+        best = min(best, (time.process_time() - began) / repeats)
+    return float(best)
+
+
+@pytest.mark.parametrize(("side", "repeats", "target"), [(256, 40, 6), (512, 12, 4), (1024, 4, 4)])
+def test_analysis_and_synthesis_in_transform_pairs(side: int, repeats: int, target: int) -> None:
+    size = (side, side)
+    plane = texture(size)
+    code = analyzed(plane)
+    pair = cpu(lambda: scipy.fft.irfft2(scipy.fft.rfft2(plane), s=size), repeats)
+    analysis = cpu(lambda: analyzed(plane), repeats)
+    synthesis = cpu(lambda: synthesized(code, size), repeats)
+    result = synthesized(code, size)[1]
+    histogram = cpu(lambda: finish(code.tone.apply(result, ANY, "a")), repeats)
+    print(
+        f"\n{side}: pair {1e3 * pair:.2f} ms; analysis {analysis / pair:.2f} + synthesis {synthesis / pair:.2f} = "
+        f"{(analysis + synthesis) / pair:.2f} pairs (target {target}); histogram step {1e3 * histogram:.2f} ms"
+    )
+
+
+def test_an_edited_code_is_made_anew_many_times_a_second() -> None:
+    code = analyzed(texture((256, 256)))
+    factor = iter(np.linspace(1, 3, 10_000))
+
+    def edit() -> None:
+        edited = replace(code, energies=(code.energies[0] * float(next(factor)), *code.energies[1:]))
+        run(Job(method="msg", inputs={"code": code_input(edited)}, size=(256, 256)))
+
+    print(f"\n256: an edited code takes {1e3 * cpu(edit, 20):.2f} ms as a whole job")
