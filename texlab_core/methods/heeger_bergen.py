@@ -38,6 +38,9 @@ ReturnT = TypeVar("ReturnT")
 # Samples worked through between two steps: about 2 ms.
 STRIDE = 2**18
 
+# Units of progress in each stage.
+UNITS = 100
+
 
 @dataclass(frozen=True, kw_only=True)
 class HeegerBergenParams(Params):
@@ -165,9 +168,10 @@ def analyze(inputs: Inputs, params: HeegerBergenParams) -> Generator[Step, None,
     image = exemplar_of(inputs).pixels
     with crew() as team:
         work = analysis.analyze(image, params.pyramid, params.scales, params.orientations, params.border, team)
-        # An estimate: every band is computed on the mirrored plane and sorted.
-        total = image.size * (4 if params.border == "reflect" else 1) * (4 * params.orientations // 3 + 4)
-        done = 0
+        total, done = image.size * 6, 0
+        if params.pyramid == "steerable":
+            # Every band is computed, on the mirrored plane, and sorted.
+            total = image.size * (4 if params.border == "reflect" else 1) * (8 * params.orientations // 3 + 4)
 
         def step(samples: int) -> Step:
             nonlocal done
@@ -217,9 +221,9 @@ class _Run:
         self.distances = np.zeros((params.iterations + 1, axes, len(self.keys)))
         self.final, self.pixel_distance = self.distances[-1], 0.0
         self.pace = Pace(STRIDE)
-        # Start, each axis of each round, colours and measuring.
-        self.total = 3 + params.iterations * max(axes, 1)
-        self.done = 0
+        # A stage is the start, one round on one axis, or all that follows; a turn of the palette is half a stage.
+        self.rounds, self.stage, self.samples = params.iterations * max(axes, 1), 0, 0
+        self.stages = self.rounds + 2 + (params.palette_rounds // 2 if params.palette == "transport" else 0)
 
     def start(self) -> Generator[Step, None, None]:
         """Make noise with the exemplar's pixel values on each axis."""
@@ -232,7 +236,7 @@ class _Run:
             work = match(plane, target.pixels, self.plan.matching, self.streams.key("start", axis))
             yield from self._steps(work, "noise")
             self.planes.append(plane)
-        self.done += 1
+        self._next_stage()
         yield self._step("noise", frame="noise")
 
     def iterate(self, iteration: int) -> Generator[Step, None, None]:
@@ -242,7 +246,7 @@ class _Run:
             tie_key = partial(self.streams.key, "ties", iteration, axis)
             work = match_round(self.planes[axis], target, self.plan, tie_key, self.team)
             self.planes[axis], self.distances[iteration, axis] = yield from self._steps(work, stage)
-            self.done += 1
+            self._next_stage()
         yield self._step(
             stage, {"mean-distance": _mean(self.distances[iteration])}, frame=f"iteration {iteration + 1}"
         )
@@ -251,16 +255,15 @@ class _Run:
         """Go back to colours, match the channels, and measure what came out."""
         self.distances[-1] = yield from self._measure(self.planes)
         self.final = self.distances[-1]
-        self.done += 1
         image = yield from self._steps(self.model.to_image(self.planes, self.size), "colours")
         if self.model.axes is not None or not self.model.planes:
             image = yield from self._colours(image)
         self.image = np.clip(image, 0, 1, out=image)
-        self.done += 1
         if self.model.axes is not None and self.model.planes:
             self.final = yield from self._measure(self.model.axes.to_axes(image))
         yield from self._measure_pixels(image)
-        self.done = self.total
+        self.stage = self.stages - 1
+        self._next_stage()
         yield self._step("done", {"mean-distance": _mean(self.distances[-1])})
         return image
 
@@ -323,12 +326,23 @@ class _Run:
         )
 
     def _steps(self, work: Task[ReturnT], stage: str) -> Generator[Step, None, ReturnT]:
-        return self.pace.steps(work, lambda _: self._step(stage))
+        def make(samples: int) -> Step:
+            self.samples += samples
+            return self._step(stage)
+
+        return self.pace.steps(work, make)
+
+    def _next_stage(self) -> None:
+        self.stage, self.samples = self.stage + 1, 0
 
     def _step(self, stage: str, metrics: Mapping[str, float] | None = None, frame: str | None = None) -> Step:
         # The first planes of the noise make no picture yet.
         whole = len(self.planes) == len(self.model.planes)
-        return Step(self.done, self.total, stage, metrics or {}, self._preview if whole else None, frame)
+        # Every sample of every band is transformed, matched and transformed back.
+        expected = self.size[0] * self.size[1] * (4 * self.params.orientations + 4)
+        most = 1 if self.stage <= self.rounds else self.stages - self.stage
+        done = round(UNITS * (self.stage + min(self.samples / expected, most)))
+        return Step(done, UNITS * self.stages, stage, metrics or {}, self._preview if whole else None, frame)
 
     def _preview(self) -> FloatImage:
         image = self.image

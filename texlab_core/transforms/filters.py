@@ -69,8 +69,19 @@ class ArrayCache:
                 self._bytes -= self._arrays.popitem(last=False)[1].nbytes
         return kept
 
+    def clear(self) -> None:
+        """Drop all arrays."""
+        with self._lock:
+            self._arrays.clear()
+            self._bytes = 0
+
 
 _CACHE = ArrayCache(256 * 2**20)
+
+
+def forget() -> None:
+    """Drop all responses."""
+    _CACHE.clear()
 
 
 def highpass(size: Size, dtype: np.dtype[Any]) -> Task[Mask]:

@@ -1,0 +1,89 @@
+"""Heeger-Bergen: whole runs in units of a Fourier transform, with 1 and 2 threads, and the longest step.
+
+Judges nothing. A unit is the CPU time of one 256 x 256 float32 rfft2 + irfft2 pair in the same process.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from tests.benchmarks.clock import cpu, fourier_pair
+from texlab_core.images import as_exemplar
+from texlab_core.methods.heeger_bergen import HeegerBergenParams
+from texlab_core.run import AnalysisCache, Job, run
+
+if TYPE_CHECKING:
+    from texlab_core.inputs import ImageInput
+    from texlab_core.steps import Step
+
+pytestmark = pytest.mark.benchmark
+
+RGB = as_exemplar("gallery:structured-pebbles").pixels
+GRAY = as_exemplar("gallery:stochastic-gravel").pixels
+
+
+def exemplar(pixels: Any, side: int) -> ImageInput:
+    """Return the texture repeated to a square of this side."""
+    many = -(-side // min(pixels.shape[:2]))
+    tiled = np.tile(pixels, (many, many, 1))[:side, :side]
+    return as_exemplar(np.round(tiled * 255).astype(np.uint8))
+
+
+def job(pixels: Any, source: int, side: int, **params: Any) -> Job:
+    return Job(
+        method="heeger-bergen",
+        inputs={"exemplar": exemplar(pixels, source)},
+        params=HeegerBergenParams(**params),
+        size=(side, side),
+    )
+
+
+def test_whole_runs() -> None:
+    unit = fourier_pair()
+    print(f"\nunit: {unit * 1e3:.3f} ms of CPU time; the target for 256 -> 256 in colour is 1000 units")
+    print("5 rounds, analysis cached, in units        1 thread   2 threads   wall time of 2 / of 1   analysis")
+    for name, pixels, source, side, params in (
+        ("colour 256 -> 256, 4 x 4", RGB, 256, 256, {}),
+        ("colour 256 -> 512, 4 x 4", RGB, 256, 512, {}),
+        ("colour 512 -> 512, 4 x 4", RGB, 512, 512, {}),
+        ("gray 256 -> 256, 4 x 4", GRAY, 256, 256, {}),
+        ("colour 256 -> 256, 4 x 18", RGB, 256, 256, {"orientations": 18}),
+        ("colour 256 -> 256, 256 bins", RGB, 256, 256, {"matching": "bins"}),
+        ("colour 256 -> 256, Laplacian", RGB, 256, 256, {"pyramid": "laplacian"}),
+        ("colour 256 -> 256, transport", RGB, 256, 256, {"palette": "transport"}),
+    ):
+        plan, cache = job(pixels, source, side, **params), AnalysisCache()
+        spent, walls = [], []
+        for threads in (1, 2):
+            spent.append(cpu(lambda t=threads, p=plan, c=cache: run(p, cache=c, threads=t), 5) / unit)
+            began = [time.perf_counter()]
+            for _ in range(5):
+                run(plan, cache=cache, threads=threads)
+                began.append(time.perf_counter())
+            walls.append(np.diff(began).min())
+        analysis = cpu(lambda p=plan: run(p, threads=1), 3) / unit - spent[0]
+        print(f"{name:38} {spent[0]:12.0f} {spent[1]:11.0f} {walls[1] / walls[0]:23.2f} {analysis:10.0f}")
+
+
+def test_longest_step() -> None:
+    print("\nlongest time between two steps of the working thread, ms of wall time (a cancel waits as long)")
+    for name, source, side, params in (
+        ("colour 512 -> 512", 512, 512, {}),
+        ("colour 512 -> 512, 256 bins, transport", 512, 512, {"matching": "bins", "palette": "transport"}),
+        ("colour 512 -> 512, 18 orientations", 512, 512, {"orientations": 18, "iterations": 1}),
+        ("colour 256 -> 2048", 256, 2048, {"iterations": 1}),
+    ):
+        plan = job(RGB, source, side, **params)
+        for threads in (1, 2):
+            moments: list[float] = []
+
+            def on_step(_: Step, moments: list[float] = moments) -> None:
+                moments.append(time.perf_counter())
+
+            run(plan, on_step, threads=threads)
+            gaps = np.diff(moments) * 1e3
+            print(f"{name:40} {threads} thread(s) {gaps.max():8.1f}   99 %: {np.percentile(gaps, 99):6.1f}")
