@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from texlab.scales import Scale, decimals
+from texlab.scales import Scale, box_step, decimals
 from texlab_core.errors import ParamError
 from texlab_core.params import describe
 
@@ -51,6 +51,9 @@ class KnobWidget(QWidget):
         """Show a value without emitting anything."""
         raise NotImplementedError
 
+    def settle(self) -> None:
+        """Emit what has not been emitted as final yet."""
+
     def set_context(self, context: Any) -> None:
         """Take what a special editor wants to show beside the value (the scene's chosen column)."""
 
@@ -76,10 +79,11 @@ class NumberKnob(KnobWidget):
         layout.addWidget(self.slider, 0, 0)
         layout.addWidget(self.box, 0, 1)
         layout.setColumnStretch(0, 1)
-        self._settle = QTimer(self)
-        self._settle.setSingleShot(True)
-        self._settle.setInterval(SETTLE_MS)
-        self._settle.timeout.connect(self._settled)
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(SETTLE_MS)
+        self._rest.timeout.connect(self._settled)
+        self.slider.actionTriggered.connect(self._step)
         self.slider.valueChanged.connect(self._slider_moved)
         self.slider.sliderReleased.connect(self._settled)
         self.box.valueChanged.connect(self._box_changed)
@@ -95,7 +99,9 @@ class NumberKnob(KnobWidget):
             box = QDoubleSpinBox()
             box.setDecimals(decimals(field))
             box.setRange(self._scale.low, self._scale.high)
-            box.setSingleStep(field.knob.step or (self._scale.high - self._scale.low) / 100)
+            box.setSingleStep(box_step(field))
+            if field.knob.log and field.knob.step is None:
+                box.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
         box.setKeyboardTracking(False)
         box.setObjectName(f"box-{field.name}")
         box.setAccessibleName(field.label)
@@ -116,10 +122,26 @@ class NumberKnob(KnobWidget):
     def _typed(self, value: float) -> int | float:
         return round(value) if self._field.kind == "int" else float(value)
 
-    def _slider_moved(self, position: int) -> None:
+    def _at(self, position: int) -> int | float:
         value = self._typed(self._scale.value(position))
-        if self._field.kind == "float":
-            value = round(value, decimals(self._field))
+        return value if self._field.kind == "int" else round(value, decimals(self._field))
+
+    def _step(self, action: int) -> None:
+        """Make a step of the keyboard change the value, however flat the scale is there."""
+        steps = QSlider.SliderAction
+        by = {
+            steps.SliderSingleStepAdd.value: 1,
+            steps.SliderPageStepAdd.value: 1,
+            steps.SliderSingleStepSub.value: -1,
+            steps.SliderPageStepSub.value: -1,
+        }.get(action, 0)
+        place = self.slider.sliderPosition()
+        while by and 0 < place < self._scale.positions and self._at(place) == self._value:
+            place += by
+        self.slider.setSliderPosition(place)
+
+    def _slider_moved(self, position: int) -> None:
+        value = self._at(position)
         if value == self._value:
             return
         self._value = value
@@ -128,10 +150,15 @@ class NumberKnob(KnobWidget):
         self.edited.emit(value, False)
         if not self.slider.isSliderDown():
             # Keys and wheel have no release: they settle after a moment.
-            self._settle.start()
+            self._rest.start()
+
+    def settle(self) -> None:
+        """Emit as final what was changed by keys or the wheel a moment ago."""
+        if self._rest.isActive():
+            self._settled()
 
     def _settled(self) -> None:
-        self._settle.stop()
+        self._rest.stop()
         self.edited.emit(self._value, True)
 
     def _box_changed(self, shown: float) -> None:
@@ -238,6 +265,8 @@ class ParameterForm(QWidget):
         self.knobs: dict[str, KnobWidget] = {}
         self._labels: dict[str, QLabel] = {}
         self._resets: dict[str, QToolButton] = {}
+        self._error_rows: dict[str, int] = {}
+        self._row = 0
         self._error = QLabel()
         self._error.setObjectName("form-error")
         self._error.setProperty("role", "error")
@@ -255,10 +284,11 @@ class ParameterForm(QWidget):
                 heading = QLabel(group)
                 heading.setProperty("role", "heading")
                 heading.setContentsMargins(0, 8, 0, 0)
-                self._layout.addWidget(heading, self._layout.rowCount(), 0, 1, 2)
+                self._layout.addWidget(heading, self._row, 0, 1, 2)
+                self._row += 1
             self._add(field)
-        self._layout.addWidget(self._error, self._layout.rowCount(), 0, 1, 2)
-        self._layout.setRowStretch(self._layout.rowCount(), 1)
+        self._layout.addWidget(self._error, self._row, 0, 1, 2)
+        self._layout.setRowStretch(self._row + 1, 1)
         if not self.fields:
             self._layout.addWidget(QLabel("This method has no parameters."), 0, 0)
         self.set_params(self._params)
@@ -275,6 +305,11 @@ class ParameterForm(QWidget):
         for name, knob in self.knobs.items():
             knob.set_value(getattr(params, name))
         self._update_state()
+
+    def settle(self) -> None:
+        """End what goes on, before another column is shown: it is emitted as final."""
+        for knob in self.knobs.values():
+            knob.settle()
 
     def set_context(self, context: Any) -> None:
         """Hand the chosen column's scene to the special editors."""
@@ -309,8 +344,12 @@ class ParameterForm(QWidget):
         reset.setAutoRaise(True)
         reset.setToolTip(f"Reset {field.label} to its default")
         reset.setAccessibleName(f"Reset {field.label}")
+        # A knob must not move when it leaves its default.
+        policy = reset.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        reset.setSizePolicy(policy)
         reset.clicked.connect(lambda: self._edit(field.name, field.default, True))
-        row = self._layout.rowCount()
+        row = self._row
         if field.kind == "bool":
             line = QWidget()
             inner = QGridLayout(line)
@@ -324,6 +363,8 @@ class ParameterForm(QWidget):
             self._layout.addWidget(label, row, 0)
             self._layout.addWidget(reset, row, 1)
             self._layout.addWidget(knob, row + 1, 0, 1, 2)
+        self._error_rows[field.name] = row + 2
+        self._row = row + 3
         self.knobs[field.name] = knob
         self._labels[field.name] = label
         self._resets[field.name] = reset
@@ -333,17 +374,25 @@ class ParameterForm(QWidget):
         try:
             params = self._params.replace(**{name: value})
         except ParamError as error:
-            self._error.setText(str(error))
-            self._error.show()
+            self._show_error(name, str(error))
             self.refused.emit(str(error))
             self.knobs[name].set_value(getattr(self._params, name))
             return
-        self._error.hide()
+        if params != self._params:
+            # What was refused while dragging stays to be read after the release.
+            self._error.hide()
         self._params = params
         if final:
             self.knobs[name].set_value(getattr(params, name))
         self._update_state()
         self.edited.emit(params, name, final)
+
+    def _show_error(self, name: str, sentence: str) -> None:
+        """Say below its knob why a value was refused."""
+        self._layout.removeWidget(self._error)
+        self._layout.addWidget(self._error, self._error_rows[name], 0, 1, 2)
+        self._error.setText(sentence)
+        self._error.show()
 
     def _update_state(self) -> None:
         for name, knob in self.knobs.items():

@@ -76,7 +76,7 @@ def decimals(field: Field) -> int:
     """Return how many decimals the number box of a float field shows; limits and default are never rounded."""
     knob = field.knob
     if knob.step is not None:
-        usual = max(0, -math.floor(math.log10(knob.step) + 1e-9))
+        usual = _places(knob.step)
     elif knob.log and knob.low:
         # Two digits that matter at the lower end.
         usual = max(2, 1 - math.floor(math.log10(knob.low)))
@@ -84,6 +84,18 @@ def decimals(field: Field) -> int:
         usual = 3 if (knob.high or 1.0) - (knob.low or 0.0) <= 10 else 2
     fixed = [value for value in (knob.low, knob.high, knob.linear_to, field.default) if value is not None]
     return min(MOST_DECIMALS, max(usual, *map(_places, fixed)))
+
+
+def box_step(field: Field) -> float:
+    """Return the step of a float field's number box: its own, or about a hundredth of the range as 1, 2 or 5."""
+    if field.knob.step is not None:
+        return field.knob.step
+    low = field.knob.low or 0.0
+    high = field.knob.linear_to or (low + 1.0 if field.knob.high is None else field.knob.high)
+    aim = (high - low) / 100 if high > low else 0.01
+    power = 10.0 ** math.floor(math.log10(aim) + 1e-9)
+    factor = max(each for each in (1, 2, 5) if each * power <= aim * (1 + 1e-9))
+    return max(factor * power, 10.0 ** -decimals(field))
 
 
 def _places(value: float) -> int:

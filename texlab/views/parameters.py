@@ -65,6 +65,8 @@ class ParametersView(QWidget):
 
     def show_column(self, column_id: int, method: Method | None, params: Params | None) -> None:
         """Show the form for a column; it is built anew only when the method differs."""
+        if self.form is not None and column_id != self._column_id:
+            self.form.settle()
         self._column_id = column_id
         self.reset_button.setEnabled(method is not None)
         self.help_button.setEnabled(method is not None)

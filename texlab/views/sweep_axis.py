@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.flow_layout import FlowLayout
-from texlab.scales import decimals
+from texlab.scales import box_step, decimals
 from texlab_core.errors import ParamError
 from texlab_core.params import describe
 from texlab_core.sweep import MAX_CELLS, Vary, check_knob, spread
@@ -280,7 +280,7 @@ class AxisEditor(QWidget):
             with QSignalBlocker(box):
                 box.setDecimals(decimals(field) if field.kind == "float" else 0)
                 box.setRange(low, high)
-                box.setSingleStep(field.knob.step or (2 if field.knob.odd else 1 if field.kind == "int" else 0.05))
+                box.setSingleStep((2 if field.knob.odd else 1) if field.kind == "int" else box_step(field))
                 box.setToolTip(f"{field.label}: {field.allowed}")
 
     def _set_numbers(self, spacing: Spacing, first: float, last: float, count: int) -> None:
