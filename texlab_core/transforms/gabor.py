@@ -34,6 +34,8 @@ Plane: TypeAlias = NDArray[np.float32]
 
 # The residual meets the lowest channels at half height: at 2/3 of 1/32.
 RESIDUAL_HALF_HEIGHT = float(CENTRE_FREQUENCIES[0]) * 2 / 3
+# Forsyth & Ponce, Fig. 11.11: stripes, and the frequency and orientation of most of them.
+ZEBRA, ZEBRA_FREQUENCY, ZEBRA_ORIENTATION = "gallery:oriented-zebra", 1 / 28, 12.0
 _RESIDUAL_WIDTH = RESIDUAL_HALF_HEIGHT * math.sqrt(math.pi / math.log(2))
 
 
