@@ -71,6 +71,16 @@ def test_equal_channels_give_equal_channels():
     assert np.all(result.image == result.image[..., :1])
 
 
+def test_colours_on_a_line_stay_on_the_line():
+    gray = texture((40, 40)).astype(np.float32) / 255
+    direction = np.float32([0.8, 0.5, 0.2])
+    image = as_exemplar(gray * direction)
+    result = make(image)
+    assert len(result.model.planes) == 1
+    along = result.image[..., :1] / direction[0]
+    np.testing.assert_allclose(result.image, along * direction, atol=0.01)
+
+
 @pytest.mark.parametrize("value", [77, (10, 200, 30)])
 def test_a_constant_image_stays_what_it_is(value):
     image = np.full((9, 12, 3), value, np.uint8)

@@ -105,6 +105,24 @@ def test_pieces_give_the_bits_of_the_whole(values):
     np.testing.assert_array_equal(histogram.match_ranks(values, target, 8), whole)
 
 
+def test_warming_up_runs_every_kernel(monkeypatch):
+    names = ["match", "count", "starts", "scatter_first", "scatter_next", "shuffle_ties", "assign"]
+    called = set()
+    for name in names:
+        kernel = getattr(ranks, name)
+        monkeypatch.setattr(
+            ranks, name, lambda *given, name=name, kernel=kernel: (called.add(name), kernel(*given))[1]
+        )
+    histogram.warm_up()
+    assert called == set(names)
+
+
+@pytest.mark.parametrize("values", [np.zeros((4, 4)), np.zeros((4, 4), np.float32)[:, ::2]])
+def test_in_place_needs_an_array_that_can_be_overwritten(values):
+    with pytest.raises(ValueError, match="contiguous float32"):
+        finish(histogram.match_ranks_in_place(values, np.zeros(3, np.float32), 0))
+
+
 def test_the_change_is_the_distance():
     values, target = sample(5000), histogram.sorted_sample(sample(5000, 2) * 2)
     steps = histogram.match_ranks_in_place(values.copy(), target, 0)

@@ -195,3 +195,13 @@ def test_filters_are_read_only_and_the_cache_is_bounded():
     assert finish(cache.get((0,), partial(made_of, 50, 1)))[0] == 1
     finish(cache.get(("huge",), partial(made_of, 500, 0)))
     assert cache.nbytes == 4000
+    cache.clear()
+    assert cache.nbytes == 0
+
+
+def test_forgotten_filters_are_made_again():
+    mask = finish(filters.highpass((16, 16), np.dtype(np.float32)))
+    filters.forget()
+    again = finish(filters.highpass((16, 16), np.dtype(np.float32)))
+    assert again is not mask
+    np.testing.assert_array_equal(again, mask)

@@ -98,7 +98,22 @@ def match_ranks_in_place(values: Sample, target: Sample, key: int) -> Task[float
     if many <= ranks.CHUNK:
         yield many
         return float(ranks.match(flat, target, seed)) / many
-    pieces = [(start, min(start + ranks.CHUNK, many)) for start in range(0, many, ranks.CHUNK)]
+    return (yield from _match_in_pieces(flat, target, seed, ranks.CHUNK))
+
+
+def warm_up() -> None:
+    """Load the compiled kernels, so that the first matching does not wait for them."""
+    values = np.zeros(2, np.float32)
+    match_ranks(values, values)
+    finish(_match_in_pieces(values, values.copy(), np.uint64(0), 1))
+
+
+def _match_in_pieces(flat: Sample, target: Sample, seed: np.uint64, chunk: int) -> Task[float]:
+    """Run the stages of the radix sort one after the other, each in pieces."""
+    from texlab_core.kernels import ranks
+
+    many = flat.size
+    pieces = [(start, min(start + chunk, many)) for start in range(0, many, chunk)]
     bits = flat.view(np.uint32)
     counts = np.zeros((ranks.PASSES, ranks.DIGITS), np.int64)
     first, second = np.empty(many, np.uint64), np.empty(many, np.uint64)
