@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import logging
+import math
 import os
 import time
 from functools import partial
@@ -41,6 +42,7 @@ class _Runtime:
     seconds: float | None = None
     started_at: float = 0.0
     drafted: bool = False
+    live: bool = False
     run: ColumnRun | None = None
     kept: Callable[[], Mapping[str, Any]] | None = None
 
@@ -122,7 +124,7 @@ class Controller(QObject):
     @property
     def busy(self) -> bool:
         """Whether any column waits or runs, or the exemplar is being prepared."""
-        running = any(each.scene.status in ("waiting", "running") for each in self._runtimes.values())
+        running = any(each.live or each.scene.status in ("waiting", "running") for each in self._runtimes.values())
         return running or self._exemplar_worker.busy or bool(self._once_workers)
 
     # What the user does.
@@ -316,9 +318,14 @@ class Controller(QObject):
         session = self.session.state
         exemplar = self._prepared.exemplar
         method = find_method(column.method)
-        size = draft_size(session.size, runtime.seconds) if draft else None
-        runtime.drafted = size is not None
-        own_draft = runtime.drafted and method.draft is not None
+        full = column.size or session.size
+        # What is filled keeps its size: a smaller start image would be another job.
+        size = draft_size(full, runtime.seconds) if draft and column.size is None else None
+        own_draft = size is not None and method.draft is not None
+        # Within a drag every picture is finished, or none would be while the events come faster than they.
+        patient, runtime.drafted = draft and runtime.drafted, draft
+        # Where pictures come as fast as events, the column stays as it is until the next one is there.
+        runtime.live = draft and size is None and runtime.scene.status == "finished"
 
         def make_job() -> Job:
             inputs = with_exemplar(exemplar, column.inputs)
@@ -328,29 +335,28 @@ class Controller(QObject):
                 method=column.method,
                 inputs=inputs,
                 params=column.params,
-                size=session.size if own_draft or size is None else size,
+                size=full if own_draft or size is None else size,
                 seed=session.seed,
             )
 
-        self._set(
-            column_id,
-            method=method.id,
-            title=method.title,
-            params=column.params,
-            status="waiting",
-            message="",
-            fraction=0.0,
-            result=None,
-            frames=() if size is None else runtime.scene.frames,
-            metrics={},
-            draft=size is not None,
-            elapsed_s=0.0,
-        )
+        changes: dict[str, Any] = {"method": method.id, "title": method.title, "params": column.params}
+        if not runtime.live:
+            changes |= {
+                "status": "waiting",
+                "message": "",
+                "fraction": 0.0,
+                "result": runtime.scene.result if draft else None,
+                "frames": runtime.scene.frames if draft else (),
+                "metrics": {},
+                "draft": size is not None,
+                "elapsed_s": 0.0,
+            }
+        self._set(column_id, **changes)
         if own_draft:
-            runtime.worker.submit(DraftRun(make_job))
+            runtime.worker.submit(DraftRun(make_job), patient=patient)
         else:
-            runtime.run = ColumnRun(make_job, self._cache, draft=runtime.drafted)
-            runtime.worker.submit(runtime.run)
+            runtime.run = ColumnRun(make_job, self._cache, draft=draft)
+            runtime.worker.submit(runtime.run, patient=patient)
 
     # The workers report.
 
@@ -362,8 +368,10 @@ class Controller(QObject):
             self._refresh.start()
 
     def _run_started(self, column_id: int) -> None:
-        self._runtimes[column_id].started_at = time.perf_counter()
-        self._set(column_id, status="running")
+        runtime = self._runtimes[column_id]
+        runtime.started_at = time.perf_counter()
+        if not runtime.live:
+            self._set(column_id, status="running")
 
     def _run_progressed(self, column_id: int, report: Progress) -> None:
         changes: dict[str, Any] = {
@@ -379,19 +387,24 @@ class Controller(QObject):
 
     def _run_finished(self, column_id: int, end: Finished | Drafted) -> None:
         runtime = self._runtimes[column_id]
+        behind = runtime.worker.behind
+        status = "waiting" if behind and not runtime.live else "finished"
+        runtime.live = runtime.live and behind
         if isinstance(end, Drafted):
-            self._set(column_id, status="finished", message="", picture=end.picture, image=end.image, draft=True)
+            self._set(column_id, status=status, message="", picture=end.picture, image=end.image, draft=True)
             return
+        # A draft tells as well how long the full size would take: the time grows with the area.
+        drawn = end.result.image.shape[0] * end.result.image.shape[1]
+        runtime.seconds = end.result.elapsed_s * max(1.0, math.prod(self.session.state.size) / drawn)
         if not end.draft:
-            runtime.seconds = end.result.elapsed_s
             runtime.kept = runtime.run.state if runtime.run is not None else None
         changes: dict[str, Any] = {
-            "status": "finished",
+            "status": status,
             "message": "",
             "fraction": 1.0,
             "picture": end.picture,
             "image": end.result.image,
-            "draft": end.draft,
+            "draft": end.draft and drawn < math.prod(self.session.state.size),
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,
             "metrics": end.metrics,
@@ -401,9 +414,11 @@ class Controller(QObject):
         self._set(column_id, **changes)
 
     def _run_failed(self, column_id: int, sentence: str) -> None:
+        self._runtimes[column_id].live = False
         self._set(column_id, status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
 
     def _run_cancelled(self, column_id: int) -> None:
+        self._runtimes[column_id].live = False
         self._set(column_id, status="cancelled", message="", draft=False)
 
     def _announce(self) -> None:

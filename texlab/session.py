@@ -46,12 +46,15 @@ class Column:
         Its parameters.
     inputs
         Further named inputs (a mask, a code, a state); the exemplar is the session's.
+    size
+        Height and width of its result; None is the session's.
     """
 
     id: int
     method: str
     params: Params
     inputs: tuple[tuple[str, Input], ...] = ()
+    size: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -205,7 +208,7 @@ class Session(QObject):
         """Give a column another method."""
         column = self.state.column(column_id)
         if column is not None and column.method != method:
-            changed = dataclasses.replace(column, method=method, params=params, inputs=())
+            changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None)
             self.apply(self.state.with_column(changed), f"method {method}")
 
     def set_inputs(self, column_id: int, inputs: tuple[tuple[str, Any], ...], text: str) -> None:
@@ -226,15 +229,33 @@ class Session(QObject):
         )
         return column.id
 
+    def fill(
+        self, params: Params, inputs: tuple[tuple[str, Input], ...], size: tuple[int, int] | None, method: str
+    ) -> int:
+        """Fill holes in the column that filled before, or in a new one at the end; returns its id."""
+        state = self.state
+        before = next(
+            (each for each in state.columns if each.method == method and "mask" in dict(each.inputs)), None
+        )
+        if before is not None:
+            column = dataclasses.replace(before, params=params, inputs=inputs, size=size)
+            self.apply(state.with_column(column), "fill")
+            return column.id
+        column = Column(state.next_id, method, params, inputs, size)
+        self.apply(dataclasses.replace(state, columns=(*state.columns, column), next_id=state.next_id + 1), "fill")
+        return column.id
+
     def duplicate_column(self, column_id: int) -> int:
         """Add a copy of a column behind it; returns the copy's id, or 0."""
         column = self.state.column(column_id)
         if column is None:
             return 0
-        copy = self.add_column(column.method, column.params, after=column_id)
-        if column.inputs:
-            self.set_inputs(copy, column.inputs, "inputs")
-        return copy
+        state = self.state
+        copy = dataclasses.replace(column, id=state.next_id)
+        place = state.columns.index(column) + 1
+        columns = (*state.columns[:place], copy, *state.columns[place:])
+        self.apply(dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), "duplicate column")
+        return copy.id
 
     def remove_column(self, column_id: int) -> None:
         """Remove a column."""

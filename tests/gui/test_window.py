@@ -444,3 +444,32 @@ def test_spectra_are_compared_in_one_click(qtbot: Any, explorer: Explorer) -> No
     explorer.session.undo()
     assert ids(explorer) == before
     wait_idle(qtbot, explorer)
+
+
+def test_efros_leung_goes_on_after_a_stop_and_after_enlarging(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    params = texlab_params("efros-leung").replace(window=7)
+    explorer = open_window(str(texture), [("efros-leung", params)], wait=False, size=150)
+    controller, column = explorer.controller, explorer.session.state.columns[0]
+    scene = controller.column_scene
+    qtbot.waitUntil(
+        lambda: scene(column.id).status == "running" and scene(column.id).fraction > 0.1, timeout=60_000
+    )
+    qtbot.keyClick(explorer.window, Qt.Key.Key_Escape)
+    qtbot.waitUntil(lambda: scene(column.id).status == "cancelled", timeout=5_000)
+    line = explorer.workspace.columns[column.id].line
+    qtbot.waitUntil(lambda: "F6 goes on" in line.text(), timeout=5_000)
+    known = (scene(column.id).picture != 128).any(axis=2)
+    assert 0.05 < known.mean() < 0.999
+    qtbot.keyClick(explorer.window, Qt.Key.Key_F6)
+    wait_idle(qtbot, explorer)
+    whole = expected(str(texture), column, size=(150, 150))
+    assert np.array_equal(result_image(explorer, column.id), whole)
+    assert scene(column.id).resumable
+    explorer.session.set_size((170, 170))
+    qtbot.keyClick(explorer.window, Qt.Key.Key_F6)
+    wait_idle(qtbot, explorer)
+    grown = result_image(explorer, column.id)
+    assert grown.shape == (170, 170, 3)
+    assert np.array_equal(grown[10:160, 10:160], whole)

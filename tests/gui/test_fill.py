@@ -1,0 +1,151 @@
+"""Painting a hole and filling it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from conftest import drag, ids, result_image, wait_idle
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFileDialog
+
+from texlab.docks.fill import FillDock, read_mask
+from texlab.views.mask_canvas import paint_line
+from texlab_core.errors import InputError
+from texlab_core.registry import methods
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from texlab.explorer import Explorer
+
+places = st.tuples(st.floats(-5, 35), st.floats(-5, 25))
+
+
+@given(places, places, st.integers(1, 9))
+def test_a_line_covers_what_is_near_it(first: Any, last: Any, radius: int) -> None:
+    mask = np.zeros((30, 20), np.bool_)
+    paint_line(mask, first, last, radius, True)
+    for row in range(30):
+        for column in range(20):
+            shares = np.linspace(0, 1, 400)
+            near = np.hypot(
+                row + 0.5 - first[0] - shares * (last[0] - first[0]),
+                column + 0.5 - first[1] - shares * (last[1] - first[1]),
+            ).min()
+            if abs(near - radius) > 0.1:
+                assert mask[row, column] == (near < radius)
+
+
+@pytest.fixture
+def filling(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> tuple[Explorer, FillDock]:
+    params = methods()["efros-leung"].params.from_json({"window": 7})
+    explorer = open_window(str(texture), [("efros-leung", params)])
+    dock = next(dock for dock in explorer.docks if isinstance(dock, FillDock))
+    explorer.window.docks["fill"].raise_()
+    qtbot.waitUntil(lambda: dock.canvas.picture is not None, timeout=20_000)
+    return explorer, dock
+
+
+def test_a_painted_hole_is_filled(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
+    explorer, dock = filling
+    canvas = dock.canvas
+    dock.radius.setValue(3)
+    assert not dock.fill_button.isEnabled()
+    at = [canvas.to_widget(20, column).toPoint() for column in (18, 22, 28)]
+    drag(qtbot, canvas.viewport(), at)
+    assert canvas.mask[20, 18:28].all()
+    assert 40 < canvas.mask.sum() < 140
+    qtbot.mouseClick(dock.fill_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(ids(explorer)) == 2, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    new = ids(explorer)[1]
+    image, original = result_image(explorer, new), explorer.controller.exemplar.pixels
+    assert image.shape == original.shape
+    assert np.array_equal(image[~canvas.mask], original[~canvas.mask])
+    assert not np.array_equal(image[canvas.mask], original[canvas.mask])
+    source = explorer.controller.column_scene(new).result.maps["source"].data
+    rows, columns = source[canvas.mask].T
+    assert np.allclose(image[canvas.mask], original[rows, columns], atol=1 / 255)
+
+
+def test_strokes_are_undone_cleared_and_inverted(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
+    _, dock = filling
+    canvas = dock.canvas
+    dock.tool.setCurrentIndex(2)
+    dock._tool_changed()
+    corners = [
+        canvas.to_widget(10, 10).toPoint(),
+        canvas.to_widget(15, 20).toPoint(),
+        canvas.to_widget(20, 30).toPoint(),
+    ]
+    drag(qtbot, canvas.viewport(), corners)
+    assert canvas.mask.sum() == 200
+    assert canvas.mask[10:20, 10:30].all()
+    canvas.setFocus()
+    qtbot.keyClick(canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert not canvas.mask.any()
+    canvas.redo()
+    assert canvas.mask.sum() == 200
+    dock.findChild(type(dock.fill_button), "fill-invert").click()
+    assert canvas.mask.sum() == 40 * 48 - 200
+    dock.findChild(type(dock.fill_button), "fill-clear").click()
+    assert not canvas.mask.any()
+
+
+def test_the_keyboard_paints(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
+    _, dock = filling
+    dock.radius.setValue(2)
+    qtbot.keyClick(dock.canvas, Qt.Key.Key_Right)
+    qtbot.keyClick(dock.canvas, Qt.Key.Key_Space)
+    assert dock.canvas.mask[20, 26]
+    assert not dock.canvas.mask[20, 30]
+
+
+def test_masks_are_read_from_transparency_or_brightness(tmp_path: Path) -> None:
+    pixels = np.full((12, 16, 4), 200, np.uint8)
+    pixels[3:6, 4:9, 3] = 0
+    Image.fromarray(pixels).save(tmp_path / "hole.png")
+    marked = np.zeros((12, 16), np.bool_)
+    marked[3:6, 4:9] = True
+    assert np.array_equal(read_mask(str(tmp_path / "hole.png"), (12, 16)), marked)
+    Image.fromarray(np.where(marked, 255, 0).astype(np.uint8)).save(tmp_path / "white.png")
+    assert np.array_equal(read_mask(str(tmp_path / "white.png"), (12, 16)), marked)
+    with pytest.raises(InputError, match="mask: must have the size of the picture, 20 x 12 pixels, got 16 x 12"):
+        read_mask(str(tmp_path / "white.png"), (12, 20))
+
+
+def test_a_loaded_mask_of_the_wrong_size_changes_nothing(
+    qtbot: Any, filling: tuple[Explorer, FillDock], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    explorer, dock = filling
+    Image.fromarray(np.zeros((5, 5), np.uint8)).save(tmp_path / "small.png")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *args, **more: (str(tmp_path / "small.png"), ""))
+    dock._load()
+    bar = explorer.window.message_bar
+    qtbot.waitUntil(bar.isVisible, timeout=10_000)
+    assert "48 x 40" in bar.label.text()
+    assert not dock.canvas.mask.any()
+    wait_idle(qtbot, explorer)
+
+
+def test_a_picture_grows_outward(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
+    explorer, dock = filling
+    explorer.session.set_size((56, 60))
+    qtbot.mouseClick(dock.grow_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(ids(explorer)) == 2, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    image, original = result_image(explorer, ids(explorer)[1]), explorer.controller.exemplar.pixels
+    assert image.shape == (56, 60, 3)
+    inner = [
+        (row, column)
+        for row in range(17)
+        for column in range(13)
+        if np.array_equal(image[row : row + 40, column : column + 48], original)
+    ]
+    assert len(inner) == 1
