@@ -88,6 +88,32 @@ def no_leaked_qt(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
         pytest.fail(f"Qt objects left behind: {', '.join(left())}.")
 
 
+@pytest.fixture(autouse=True)
+def window_manager(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Give every window that appears the keyboard, as a window manager does; a bare X server has none."""
+    if PLATFORM != "xcb" or "gui" not in request.path.parts:
+        yield
+        return
+    from PySide6.QtCore import QEvent, QObject, Qt
+    from PySide6.QtWidgets import QWidget
+
+    app = request.getfixturevalue("qapp")
+    activated = (Qt.WindowType.Window, Qt.WindowType.Dialog)
+
+    class Manager(QObject):
+        def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+            if event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow():
+                if watched.windowType() in activated:
+                    watched.activateWindow()
+                    app.processEvents()
+            return False
+
+    manager = Manager()
+    app.installEventFilter(manager)
+    yield
+    app.removeEventFilter(manager)
+
+
 def _persists(left: Callable[[], list[str]]) -> bool:
     """Return whether something is left even after what is on its way out had time to go."""
     if not left():
