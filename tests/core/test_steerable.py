@@ -142,7 +142,8 @@ def test_levels_leave_a_residual_of_at_least_two_samples():
 
 
 def test_bits_do_not_depend_on_the_number_of_threads():
-    for shape in [(301, 167), (256, 256), (97, 64)]:
+    # Above and below the size from which transforms use threads.
+    for shape in [(301, 167), (513, 517), (512, 512), (641, 422)]:
         image = picture(shape, np.float32)
         with use_workers(1):
             one = steerable.build(image, 4, 4)
