@@ -86,7 +86,7 @@ class DraftRun:
 
 @dataclass
 class ColumnRun:
-    """A request for a worker: runs ``job`` (or its draft)."""
+    """A request for a worker: runs ``job``; as a draft with nothing on the way and without further measures."""
 
     make_job: Callable[[], Job]
     cache: AnalysisCache
@@ -105,14 +105,14 @@ class ColumnRun:
             nonlocal kept
             metrics.update(step.metrics)
             self.state = step.state
-            due = task.due()
+            due = not self.draft and task.due()
             keep = step.frame is not None and not self.draft and kept < MAX_FRAME_BYTES
             image = step.preview() if step.preview is not None and (due or keep) else None
             picture = to_picture(image) if image is not None else None
             if keep and picture is not None and step.frame is not None:
                 kept += picture.nbytes
                 self.frames.append(Frame(step.frame, picture))
-            if due and not self.draft:
+            if due:
                 fraction = step.fraction if step.phase == "synthesis" else 0.0
                 elapsed = time.perf_counter() - start
                 message = step.stage or step.phase

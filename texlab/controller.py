@@ -391,7 +391,8 @@ class Controller(QObject):
         status = "waiting" if behind and not runtime.live else "finished"
         runtime.live = runtime.live and behind
         if isinstance(end, Drafted):
-            self._set(column_id, status=status, message="", picture=end.picture, image=end.image, draft=True)
+            shown = {"picture": end.picture, "image": end.image, "result": None, "draft": True}
+            self._set(column_id, status=status, message="", **shown)
             return
         # A draft tells as well how long the full size would take: the time grows with the area.
         drawn = end.result.image.shape[0] * end.result.image.shape[1]

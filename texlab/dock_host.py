@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QEvent, QObject, Signal
+from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
 
 from texlab.jobs import Slots, Task, Worker
 
@@ -19,7 +19,8 @@ class DockHost(QObject):
     """Drives one dock: only while it is visible, one question at a time, the newest scene next.
 
     A running question is not interrupted by a newer scene, or a live run would never be shown; the newer scene is
-    asked about as soon as the answer is there.
+    asked about as soon as the answer is there, but not within ``dock.rest_ms`` of it: while a control is dragged,
+    the pictures come first.
     """
 
     failed = Signal(str)
@@ -33,6 +34,10 @@ class DockHost(QObject):
         self._asked: tuple[Any, ...] | None = None
         self._computing = False
         self._dirty = False
+        self._rested = QDeadlineTimer(0)
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.timeout.connect(self._update)
         dock.installEventFilter(self)
         dock.asks.connect(self._update)
 
@@ -43,14 +48,15 @@ class DockHost(QObject):
 
     def close(self) -> None:
         """Stop and join the thread, and what the dock started itself."""
+        self._rest.stop()
         self.dock.shut_down()
         if self._worker is not None:
             self._worker.close()
 
     @property
     def busy(self) -> bool:
-        """Whether an answer is under way."""
-        return self._computing
+        """Whether an answer is under way, or a newer scene waits to be asked about."""
+        return self._computing or (self._rest.isActive() and self.dock.isVisible())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Catch up when the dock becomes visible."""
@@ -63,6 +69,10 @@ class DockHost(QObject):
             return
         if self._computing:
             self._dirty = True
+            return
+        if not self._rested.hasExpired():
+            if not self._rest.isActive():
+                self._rest.start(self._rested.remainingTime())
             return
         question = self.dock.question(self._scene)
         if question is None:
@@ -88,6 +98,7 @@ class DockHost(QObject):
 
     def _answered(self, answer: Any) -> None:
         self._computing = False
+        self._rested.setRemainingTime(self.dock.rest_ms)
         self.dock.present(answer)
         self._again()
 

@@ -1,8 +1,9 @@
 """Work in the background: the only file that knows both threads and Qt.
 
 Every :class:`Worker` is one thread with a one-slot mailbox: the newest request replaces a waiting one and stops a
-running one. Requests carry a generation number, checked in the thread and again on arrival, so that nothing stale
-is ever delivered. Every request that starts ends with exactly one of finished, failed, cancelled.
+running one, unless it is patient. Requests carry a generation number, checked in the thread and again on arrival,
+so that nothing stale is ever delivered. Every request that starts ends with exactly one of finished, failed,
+cancelled.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class Task:
 
     def should_stop(self) -> bool:
         """Whether a newer request, a cancel or a close has come."""
-        return self._worker._wanted != self.generation
+        return self.generation < self._worker._oldest
 
     def due(self) -> bool:
         """Whether enough time has passed for another progress report to be shown."""
@@ -110,7 +111,10 @@ class Worker(QObject):
         self._slots = slots
         self._mail = threading.Condition()
         self._request: Request | None = None
-        self._wanted = 0
+        self._newest = 0
+        # Requests from before this one are stale: whatever they report is dropped.
+        self._oldest = 0
+        self._reported = 0
         self._closing = False
         self._busy = False
         self._progress: tuple[int, object] | None = None
@@ -122,7 +126,12 @@ class Worker(QObject):
     @property
     def generation(self) -> int:
         """Number of the newest request."""
-        return self._wanted
+        return self._newest
+
+    @property
+    def behind(self) -> bool:
+        """Whether what was reported last is not about the newest request."""
+        return self._reported < self._newest
 
     @property
     def busy(self) -> bool:
@@ -130,22 +139,29 @@ class Worker(QObject):
         with self._mail:
             return self._busy or self._request is not None
 
-    def submit(self, request: Request) -> int:
-        """Run ``request`` instead of whatever waits or runs; returns its generation number."""
+    def submit(self, request: Request, *, patient: bool = False) -> int:
+        """Run ``request`` instead of whatever waits or runs; returns its generation number.
+
+        A patient request lets the running one finish: what is asked for faster than it can be answered would
+        otherwise never be seen.
+        """
         with self._mail:
-            self._wanted += 1
+            self._newest += 1
+            if not patient:
+                self._oldest = self._newest
             self._request = request
             self._mail.notify()
         if self._slots is not None:
             self._slots.wake()
-        return self._wanted
+        return self._newest
 
     def cancel(self) -> None:
         """Stop what runs and forget what waits."""
         with self._mail:
             running = self._busy or self._request is not None
             self._request = None
-            self._wanted += 1
+            self._newest += 1
+            self._oldest = self._reported = self._newest
         if self._slots is not None:
             self._slots.wake()
         if running:
@@ -156,7 +172,8 @@ class Worker(QObject):
         with self._mail:
             self._closing = True
             self._request = None
-            self._wanted += 1
+            self._newest += 1
+            self._oldest = self._newest
             self._mail.notify()
         if self._slots is not None:
             self._slots.wake()
@@ -174,7 +191,7 @@ class Worker(QObject):
                 if self._closing:
                     return
                 request, self._request = self._request, None
-                generation = self._wanted
+                generation = self._newest
                 self._busy = True
             assert request is not None
             self._run_one(request, Task(self, generation))
@@ -222,8 +239,9 @@ class Worker(QObject):
             if not self.busy:
                 self.idle.emit()
             return
-        if event.generation != self._wanted or self._closing:
+        if event.generation < self._oldest or self._closing:
             return
+        self._reported = event.generation
         if event.kind == "started":
             self.started.emit(event.generation)
         elif event.kind == "finished":
@@ -236,5 +254,5 @@ class Worker(QObject):
     def _receive_progress(self) -> None:
         with self._mail:
             waiting, self._progress = self._progress, None
-        if waiting is not None and waiting[0] == self._wanted and not self._closing:
+        if waiting is not None and waiting[0] >= self._oldest and not self._closing:
             self.progressed.emit(waiting[1])

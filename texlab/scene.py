@@ -47,7 +47,8 @@ class ColumnScene:
     image
         The same as values, (H, W, C) float32 in [0, 1]; a preview while the run goes on.
     result
-        The finished result, or None while there is none for the present parameters.
+        The finished result, or None while there is none for the present parameters. While a control is dragged it
+        is the newest there is; ``result.job`` tells what it was made with.
     draft
         The picture is a quick one, made while a control is dragged.
     frames

@@ -26,6 +26,8 @@ class Dock(QWidget):
     title: ClassVar[str]
     help: ClassVar[str]
     order: ClassVar[int] = 100
+    rest_ms: ClassVar[int] = 100
+    """How long an answer stays before the dock is asked again."""
 
     asks = Signal()
     intention = Signal(object)

@@ -1,0 +1,177 @@
+"""Opens a window, moves the real pointer in it and prints how long the answers take: see bench_thresholds.py."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import QEventLoop, QPoint, QTimer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+LEFT_BUTTON = 1
+EVENTS = 120
+FRAME_S = 1 / 60
+
+
+class Pointer:
+    """The pointer of the X server, moved by XTest: Qt sees real events."""
+
+    def __init__(self) -> None:
+        self._x11 = ctypes.CDLL("libX11.so.6")
+        self._test = ctypes.CDLL("libXtst.so.6")
+        self._x11.XOpenDisplay.restype = ctypes.c_void_p
+        self._display = ctypes.c_void_p(self._x11.XOpenDisplay(None))
+
+    def move(self, place: QPoint) -> None:
+        """Move to a place of the screen."""
+        self._test.XTestFakeMotionEvent(self._display, -1, place.x(), place.y(), ctypes.c_ulong(0))
+        self._x11.XFlush(self._display)
+
+    def press(self, down: bool) -> None:
+        """Press or release the left button."""
+        self._test.XTestFakeButtonEvent(self._display, LEFT_BUTTON, int(down), ctypes.c_ulong(0))
+        self._x11.XFlush(self._display)
+
+
+def wait(condition: Callable[[], bool], limit_s: float = 60.0) -> None:
+    """Process events until a condition holds, asked after every batch of events."""
+    loop = QEventLoop()
+    end = time.perf_counter() + limit_s
+    # Something must wake the loop up now and then, or a missed condition would sleep for ever.
+    pulse = QTimer()
+    pulse.setInterval(5)
+    pulse.start()
+    while not condition():
+        if time.perf_counter() > end:
+            raise TimeoutError
+        loop.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+    pulse.stop()
+
+
+def pause(seconds: float) -> None:
+    """Process events for a while."""
+    end = time.perf_counter() + seconds
+    wait(lambda: time.perf_counter() >= end)
+
+
+def quantiles(seconds: list[float]) -> str:
+    p50, p95, top = np.quantile(np.array(seconds) * 1000, (0.5, 0.95, 1.0))
+    return f"median {p50:.1f} ms, p95 {p95:.1f}, most {top:.1f}  ({len(seconds)} events)"
+
+
+class Watch:
+    """Remembers when the pane of a column was painted, and with which parameters."""
+
+    def __init__(self, explorer: Any, column_id: int) -> None:
+        self._view = explorer.workspace.columns[column_id]
+        self.painted: list[tuple[float, Any, bool]] = []
+        pane = self._view.pane
+        paint = type(pane).paintEvent
+
+        def paint_event(event: Any) -> None:
+            paint(pane, event)
+            scene = self._view.scene
+            # The result is that of the picture, also while a newer one is under way.
+            if scene is not None and scene.result is not None and pane.picture is scene.picture:
+                self.painted.append((time.perf_counter(), scene.result.job.params, scene.draft))
+
+        pane.paintEvent = paint_event
+
+
+def open_window(columns: int) -> Any:
+    from texlab import app
+    from texlab.settings import Settings
+    from texlab.theme import ThemeSource
+    from texlab_core.registry import methods
+
+    settings, themes = Settings(), ThemeSource("dark")
+    app.application()
+    window = app.build(settings, themes)
+    window.show()
+    explorer = app.complete(window, settings, themes)
+    settings.values["session"] = {"seed": 1, "size": [256, 256]}
+    names = ["de-bonet", "heeger-bergen", "msg", "efros-leung"][:columns]
+    explorer.start(None, columns=[(name, methods()[name].params()) for name in names])
+    wait(lambda: explorer.idle)
+    pause(0.5)
+    return explorer
+
+
+def drag(pointer: Pointer, explorer: Any, start: QPoint, places: list[QPoint], title: str) -> None:
+    """Drag over places, first waiting for every answer, then 60 events a second."""
+    column_id = explorer.session.state.columns[0].id
+    watch = Watch(explorer, column_id)
+    params = lambda: explorer.session.state.column(column_id).params  # noqa: E731
+    pointer.move(start)
+    pause(0.2)
+    pointer.press(True)
+    pause(0.2)
+    waited, drafts = [], 0
+    for place in places:
+        before = params()
+        began = time.perf_counter()
+        pointer.move(place)
+        wait(lambda before=before: params() is not before, 5)
+        wanted = params()
+        wait(lambda wanted=wanted: bool(watch.painted) and watch.painted[-1][1] is wanted, 5)
+        waited.append(watch.painted[-1][0] - began)
+        drafts += watch.painted[-1][2]
+        pause(0.01)
+    print(f"{title}, one event at a time: {quantiles(waited)}, {drafts} drafts")
+
+    sent: list[tuple[float, Any]] = []
+    watch.painted.clear()
+    for place in reversed(places[:-1]):
+        began = time.perf_counter()
+        before = params()
+        pointer.move(place)
+        wait(lambda before=before: params() is not before, 5)
+        sent.append((began, params()))
+        pause(max(0.0, began + FRAME_S - time.perf_counter()))
+    wait(lambda: bool(watch.painted) and watch.painted[-1][1] is params(), 5)
+    pointer.press(False)
+    order = {id(each): place for place, (_, each) in enumerate(sent)}
+    answered = [
+        next(at for at, shown, _ in watch.painted if order.get(id(shown), -1) >= place) - began
+        for place, (began, _) in enumerate(sent)
+    ]
+    print(f"{title}, 60 events a second: {quantiles(answered)}, {len(watch.painted)} repaints")
+
+
+def slider(pointer: Pointer, explorer: Any) -> None:
+    handle = explorer.window.parameters.form.knobs["alpha"].slider
+    explorer.window.parameters.scroll_area.ensureWidgetVisible(handle)
+    pause(0.2)
+    start = _handle(handle)
+    steps = np.tile(np.r_[1:9, 7:-9:-1, -7:1], 10)[:EVENTS]
+    places = [handle.mapToGlobal(start + QPoint(int(step), 0)) for step in steps]
+    drag(pointer, explorer, handle.mapToGlobal(start), places, "slider")
+
+
+def _handle(slider: Any) -> QPoint:
+    from PySide6.QtWidgets import QStyle, QStyleOptionSlider
+
+    option = QStyleOptionSlider()
+    slider.initStyleOption(option)
+    control, part = QStyle.ComplexControl.CC_Slider, QStyle.SubControl.SC_SliderHandle
+    return slider.style().subControlRect(control, option, part, slider).center()
+
+
+def main(what: str, columns: int) -> None:
+    explorer = open_window(columns)
+    pointer = Pointer()
+    try:
+        {"slider": slider}[what](pointer, explorer)
+    finally:
+        explorer.window.close()
+        explorer.window.deleteLater()
+
+
+if __name__ == "__main__":
+    sys.argv[1:] = sys.argv[1:] or ["slider", "1"]
+    main(sys.argv[1], int(sys.argv[2]))
