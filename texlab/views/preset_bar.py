@@ -23,6 +23,7 @@ class PresetBar(QWidget):
         ("save", "Save as preset ...", False),
         ("rename", "Rename this preset ...", True),
         ("delete", "Delete this preset", True),
+        ("restore", "Bring back the deleted preset", False),
         ("export", "Export this preset ...", False),
         ("import", "Import a preset ...", False),
     )
@@ -59,6 +60,7 @@ class PresetBar(QWidget):
         layout.addWidget(self.button)
         self.box.activated.connect(self._activated)
         self.show_presets([], set())
+        self.offer_restore(None)
 
     @property
     def current(self) -> Preset | None:
@@ -86,6 +88,12 @@ class PresetBar(QWidget):
         with QSignalBlocker(self.box):
             self.box.setCurrentIndex(0)
         self._update_menu()
+
+    def offer_restore(self, name: str | None) -> None:
+        """Offer to bring back the preset that was deleted last, or nothing."""
+        action = self.actions_by_name["restore"]
+        action.setVisible(name is not None)
+        action.setText(f"Bring back {name}".replace("&", "&&"))
 
     def _activated(self) -> None:
         self._update_menu()
