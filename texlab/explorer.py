@@ -34,6 +34,7 @@ from texlab_core.gallery import gallery
 from texlab_core.inputs import Crop
 from texlab_core.registry import methods
 from texlab_core.run import MAX_SEED, versions
+from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock
@@ -76,6 +77,7 @@ class Explorer(QObject):
         self.docks: list[Dock] = [make() for make in dock_classes()]
         self.hosts = [DockHost(dock, self._dock_slots, self) for dock in self.docks]
         self._thumbnails = Worker("thumbnails", parent=self)
+        self._warming = Worker("warming", parent=self)
         self._memory = QTimer(self)
         self._memory.setInterval(MEMORY_MS)
         self._memory.timeout.connect(lambda: window.memory_label.setText(memory_text()))
@@ -100,6 +102,13 @@ class Explorer(QObject):
         self.session.select(made[place].id)
         self.session.reset_history()
         self._open_first(source, saved)
+        # What the first columns do not need is loaded once they have what they need.
+        self.controller.all_idle.connect(self._warm_up)
+
+    def _warm_up(self) -> None:
+        if self.session.state.sample is not None:
+            self.controller.all_idle.disconnect(self._warm_up)
+            self._warming.submit(lambda task: warm_up(task.should_stop))
 
     def _open_first(self, source: str | None, saved: Any) -> None:
         if source is not None:
@@ -134,6 +143,7 @@ class Explorer(QObject):
         for host in self.hosts:
             host.close()
         self._thumbnails.close()
+        self._warming.close()
         self.overlays.close()
         self.controller.close()
         self.crash.remove()
