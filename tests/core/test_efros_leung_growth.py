@@ -130,7 +130,7 @@ def test_other_settings_go_on_from_what_is_there() -> None:
     arrays = step.state()
     known = arrays["status"] == 1
     result = run(job(more={"state": ArraysInput(arrays, "state")}, window=9, shape="disc"))
-    np.testing.assert_array_equal(result.maps["source"].data[known][:, 0], arrays["source"][known] // 21)
+    np.testing.assert_array_equal(result.maps["source"].data[known][:, 0], (arrays["source"][known] - 1) // 21)
 
 
 def test_the_order_depends_on_geometry_alone() -> None:

@@ -52,12 +52,30 @@ def frontier(status: Any, tiles: Any, first: Any, last: Any, layer: Any) -> Any:
 
 
 @njit
-def count_known(status: Any, rows: Any, columns: Any, tiles: Any, pixels: Any, counts: Any) -> None:
-    """Count the known neighbours of each of ``pixels`` within a window, (n,) rows and columns of offsets."""
+def layer_keys(
+    status: Any, rows: Any, columns: Any, tiles: Any, key: Any, pixels: Any, first: Any, keys: Any
+) -> None:
+    """Write what sorts pixels: 12 bits of unknown neighbours, 26 of a hash, 26 of the place in the layer.
+
+    Parameters
+    ----------
+    status
+        (H, W) uint8.
+    rows, columns
+        (n,) int64, the offsets among which known neighbours are counted.
+    tiles
+        The image continues periodically.
+    key
+        Of the hash.
+    pixels, first
+        (m,) int32, row x width + column, and the place of the first of them in the layer.
+    keys
+        (m,) uint64, written.
+    """
     height, width = status.shape
     for i in range(len(pixels)):
         y, x = pixels[i] // width, pixels[i] % width
-        count = 0
+        missing = len(rows)
         for k in range(len(rows)):
             row, column = y + rows[k], x + columns[k]
             if tiles:
@@ -65,15 +83,9 @@ def count_known(status: Any, rows: Any, columns: Any, tiles: Any, pixels: Any, c
             elif row < 0 or row >= height or column < 0 or column >= width:
                 continue
             if status[row, column] == KNOWN:
-                count += 1
-        counts[i] = count
-
-
-@njit
-def tie_breakers(key: Any, width: Any, pixels: Any, bits: Any) -> None:
-    """Hash each of ``pixels``, for a random order among equals."""
-    for i in range(len(pixels)):
-        bits[i] = _hash(key, pixels[i] // width, pixels[i] % width)
+                missing -= 1
+        random = _hash(key, y, x) >> np.uint64(38)
+        keys[i] = (np.uint64(missing) << np.uint64(52)) | (random << np.uint64(26)) | np.uint64(first + i)
 
 
 @njit

@@ -57,7 +57,7 @@ class Window(NamedTuple):
 
 
 class Canvas(NamedTuple):
-    """The image being grown: ``values`` (C, H, W) uint8, (H, W) maps; ``source`` is row x width + column or -1."""
+    """The image being grown: ``values`` (C, H, W) uint8, (H, W) maps; ``source`` is row x width + column + 1."""
 
     values: NDArray[np.uint8]
     status: NDArray[np.uint8]

@@ -332,7 +332,7 @@ def _coherent(canvas: Any, pool: Any, rule: Any, search: Any, y: Any, x: Any) ->
                 row, column = row % height, column % width
             elif row < 0 or row >= height or column < 0 or column >= width:
                 continue
-            source = sources[row, column]
+            source = sources[row, column] - 1
             if status[row, column] != KNOWN or source < 0 or source - dy * pool_width - dx == latest:
                 continue
             latest = source - dy * pool_width - dx
@@ -455,7 +455,7 @@ def _choose(canvas: Any, pool: Any, rule: Any, search: Any, y: Any, x: Any) -> N
         place = search.found[_pick(rule.key, y, x, count)]
     row, column = place // pool.stride - pool.margin, place % pool.stride - pool.margin
     canvas.matches[y, x] = count
-    canvas.source[y, x] = row * pool.width + column
+    canvas.source[y, x] = row * pool.width + column + 1
     for channel in range(canvas.values.shape[0]):
         canvas.values[channel, y, x] = pool.values[channel * pool.plane + place]
     numbers[FILLED] += 1

@@ -216,7 +216,14 @@ def synthesize(
 
     matching = params.matching()
     exemplar = exemplar_of(inputs)
-    beginning = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
+    laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
+    while True:
+        try:
+            next(laying)
+        except StopIteration as end:
+            beginning = end.value
+            break
+        yield Step(0, size[0] * size[1], "laying out what is known")
     settings = settings_digest(inputs, matching, size, streams)
     growth = make_growth(beginning, model.pool, matching, streams, settings)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from texlab_core.inputs import exemplar_of
 from texlab_core.neighbourhood.candidates import make_pool, to_bytes
-from texlab_core.neighbourhood.fill import allowed_centres, begin, check_inputs, make_growth
+from texlab_core.neighbourhood.fill import allowed_centres, at_once, begin, check_inputs, make_growth
 from texlab_core.neighbourhood.windows import offsets
 from texlab_core.run import Streams
 
@@ -59,7 +59,7 @@ def draft(
         size = _smaller(size, matching, exemplar.channels)
     pool = make_pool(to_bytes(exemplar.pixels), allowed_centres(inputs, matching), matching)
     streams = Streams(seed)
-    beginning = begin(inputs, matching, size, streams, seed_patch=seed_patch, anchor=anchor)
+    beginning = at_once(begin(inputs, matching, size, streams, seed_patch=seed_patch, anchor=anchor))
     growth = make_growth(beginning, pool, matching, streams, b"draft", guesses=GUESSES)
     for _ in growth.run():
         if time.perf_counter() > deadline:

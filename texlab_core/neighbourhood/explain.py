@@ -106,7 +106,7 @@ def explain(grown: Grown, row: int, column: int, *, best: int = 12) -> Explanati
     known = (canvas.order < moment) if not given else np.zeros((height, width), bool)
     then = canvas._replace(status=known.astype(np.uint8))
     shown, weights = _window(then, matching, row, column)
-    source = int(canvas.source[row, column])
+    source = int(canvas.source[row, column]) - 1
     chosen = None if source < 0 else (source // pool.width, source % pool.width)
     if given:
         none = np.empty((0, 2), np.int32)

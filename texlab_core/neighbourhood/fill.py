@@ -14,7 +14,7 @@ from texlab_core.neighbourhood.candidates import may_be_copied, to_bytes, whole_
 from texlab_core.neighbourhood.growth import Growth, empty_canvas
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Generator, Mapping
 
     from numpy.typing import NDArray
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Anchor = Literal[
     "center", "top-left", "top", "top-right", "left", "right", "bottom-left", "bottom", "bottom-right"
 ]
+_PIXELS_AT_ONCE = 2**16
 _STATE = (
     "values",
     "status",
@@ -167,8 +168,8 @@ def _state_is_sound(arrays: Mapping[str, NDArray[Any]], exemplar: tuple[int, int
     whole = all(np.issubdtype(each.dtype, np.integer) for each in (source, queue, numbers, arrays["order"]))
     return bool(
         whole
-        and source.min() >= -1
-        and source.max() < exemplar[0] * exemplar[1]
+        and source.min() >= 0
+        and source.max() <= exemplar[0] * exemplar[1]
         and (queue.size == 0 or (queue.min() >= 0 and queue.max() < height * width))
         and 0 <= numbers[0] <= queue.size
         and numbers.min() >= 0
@@ -205,8 +206,8 @@ def allowed_centres(inputs: Inputs, matching: Matching) -> NDArray[np.bool_]:
 
 def begin(
     inputs: Inputs, matching: Matching, size: tuple[int, int], streams: Streams, *, seed_patch: int, anchor: Anchor
-) -> Beginning:
-    """Lay out what is known at the start.
+) -> Generator[None, None, Beginning]:
+    """Lay out what is known at the start; yields between portions of large images.
 
     A ``state`` counts most; then ``start`` (the exemplar when there is only a ``mask``) but what the mask marks;
     otherwise a patch of ``seed_patch`` x ``seed_patch`` pixels from a random place of the exemplar is put in the
@@ -214,10 +215,20 @@ def begin(
     """
     state = inputs.get("state")
     if isinstance(state, ArraysInput):
-        return _from_state(state, size, anchor)
+        return (yield from _from_state(state, size, anchor))
     if "start" in inputs or "mask" in inputs:
-        return _from_image(inputs, size, anchor)
+        return (yield from _from_image(inputs, size, anchor))
     return _from_seed(inputs, matching, size, streams("seed patch"), seed_patch)
+
+
+def at_once(beginning: Generator[None, None, Beginning]) -> Beginning:
+    """Run :func:`begin` to its end."""
+    while True:
+        try:
+            next(beginning)
+        except StopIteration as end:
+            found: Beginning = end.value
+            return found
 
 
 def settings_digest(inputs: Inputs, matching: Matching, size: tuple[int, int], streams: Streams) -> bytes:
@@ -259,17 +270,18 @@ def full_state(growth: Growth, exemplar: ImageInput, given: FloatImage | None) -
     }
 
 
-def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Beginning:
+def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Generator[None, None, Beginning]:
     arrays = state.arrays
     channels, height, width = arrays["values"].shape
     canvas = empty_canvas(channels, size)
     place = _placed((height, width), size, anchor)
-    for name, target in canvas._asdict().items():
-        target[..., *place] = arrays[name]
-    given = None
-    if arrays["given"].size:
-        given = np.zeros((*size, channels), np.float32)
-        given[place] = arrays["given"]
+    given = np.zeros((*size, channels), np.float32) if arrays["given"].size else None
+    for rows in _row_blocks(height, width):
+        for name, target in canvas._asdict().items():
+            target[..., *place][..., rows, :] = arrays[name][..., rows, :]
+        if given is not None:
+            given[place][rows] = arrays["given"][rows]
+        yield
     position, filled, filled_before_layer, row, started = (int(number) for number in arrays["numbers"])
     if size != (height, width):
         canvas.status[canvas.status == 2] = 0
@@ -294,23 +306,29 @@ def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Be
     return Beginning(canvas, given, progress)
 
 
-def _from_image(inputs: Inputs, size: tuple[int, int], anchor: Anchor) -> Beginning:
+def _from_image(inputs: Inputs, size: tuple[int, int], anchor: Anchor) -> Generator[None, None, Beginning]:
     exemplar = exemplar_of(inputs)
     start, mask = _image(inputs, "start"), _image(inputs, "mask")
     image = exemplar if start is None else start
-    pixels = np.broadcast_to(image.pixels, (*image.size, exemplar.channels))
-    known = np.ones(image.size, bool) if mask is None else ~_marked(mask)
+    height, width = image.size
     canvas = empty_canvas(exemplar.channels, size)
     place = _placed(image.size, size, anchor)
-    canvas.values[:, *place] = to_bytes(pixels) * known
-    canvas.status[place] = known
-    if image.sha256 == exemplar.sha256:
-        # Every given pixel is its own source.
-        sources = np.arange(known.size, dtype=np.int32).reshape(known.shape)
-        canvas.source[place] = np.where(known, sources, -1)
-        return Beginning(canvas, None, {})
-    given = np.zeros((*size, exemplar.channels), np.float32)
-    given[place] = pixels * known[..., None]
+    # Every given pixel of the exemplar is its own source; others are kept as they are.
+    own = image.sha256 == exemplar.sha256
+    given = None if own else np.zeros((*size, exemplar.channels), np.float32)
+    for rows in _row_blocks(height, width):
+        pixels = np.broadcast_to(image.pixels[rows], (rows.stop - rows.start, width, exemplar.channels))
+        known = np.ones(pixels.shape[:2], bool)
+        if mask is not None:
+            known = mask.pixels[rows].max(axis=2) == 0
+        canvas.values[:, *place][:, rows] = to_bytes(pixels) * known
+        canvas.status[place][rows] = known
+        if given is None:
+            sources = np.arange(rows.start * width + 1, rows.stop * width + 1, dtype=np.int32)
+            canvas.source[place][rows] = sources.reshape(-1, width) * known
+        else:
+            given[place][rows] = pixels * known[..., None]
+        yield
     return Beginning(canvas, given, {})
 
 
@@ -333,7 +351,7 @@ def _from_seed(
     canvas = empty_canvas(exemplar.channels, size)
     canvas.values[:, *place] = to_bytes(exemplar.pixels[source_rows, source_columns])
     canvas.status[place] = 1
-    canvas.source[place] = source_rows * width + source_columns
+    canvas.source[place] = source_rows * width + source_columns + 1
     return Beginning(canvas, None, {})
 
 
@@ -351,6 +369,11 @@ def _placed(inner: tuple[int, int], outer: tuple[int, int], anchor: Anchor) -> t
     top = 0 if "top" in anchor else free[0] if "bottom" in anchor else free[0] // 2
     left = 0 if "left" in anchor else free[1] if "right" in anchor else free[1] // 2
     return slice(top, top + inner[0]), slice(left, left + inner[1])
+
+
+def _row_blocks(height: int, width: int) -> list[slice]:
+    rows = max(1, _PIXELS_AT_ONCE // width)
+    return [slice(first, min(first + rows, height)) for first in range(0, height, rows)]
 
 
 def _image(inputs: Inputs, name: str) -> ImageInput | None:

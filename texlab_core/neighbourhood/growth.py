@@ -78,7 +78,7 @@ class Growth:
         self.search.numbers[FILLED] = self.filled
         self.search.levels[LAYER_BEST] = self.layer_best
         self.search.levels[ERROR_LIMIT] = self.matching.limit if self.limit is None else self.limit
-        self.total = self.filled + int(np.count_nonzero(self.canvas.status != 1))
+        self.total = self.filled + self.canvas.status.size - _count_known(self.canvas.status)
         self._budget = 500_000
 
     def run(self) -> Generator[Step, None, None]:
@@ -227,14 +227,19 @@ def make_search(pool: Pool, window: Window, channels: int) -> Search:
     )
 
 
+def _count_known(status: NDArray[np.uint8]) -> int:
+    parts = np.array_split(status.reshape(-1), max(1, status.size >> 20))
+    return sum(int(np.count_nonzero(part == 1)) for part in parts)
+
+
 def empty_canvas(channels: int, size: tuple[int, int]) -> Canvas:
-    """Return a canvas of which nothing is known."""
+    """Return a canvas of which nothing is known; zeros, so that no memory is touched before it is needed."""
     from texlab_core.kernels.neighbourhood_types import Canvas
 
     return Canvas(
         values=np.zeros((channels, *size), np.uint8),
         status=np.zeros(size, np.uint8),
-        source=np.full(size, -1, np.int32),
+        source=np.zeros(size, np.int32),
         order=np.zeros(size, np.int32),
         matches=np.zeros(size, np.int32),
         d_min=np.zeros(size, np.float32),

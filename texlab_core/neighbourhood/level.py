@@ -51,7 +51,7 @@ def leave_one_out(
     canvas.status[:] = 1
     # The candidate beside the place itself is a good bound on d_min from the start.
     rows, columns = np.indices((height, width), dtype=np.int32)
-    canvas.source[:] = rows * width + (columns + 1) % width
+    canvas.source[:] = rows * width + (columns + 1) % width + 1
     queue = _grid(allowed, 0 if periodic else matching.window // 2)
     window = make_window(matching, channels)
     rule = make_rule(matching, 0, leave_out=True)._replace(tiles=periodic)

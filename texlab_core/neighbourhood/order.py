@@ -80,23 +80,18 @@ def raster_rows(status: NDArray[np.uint8], first: int) -> tuple[NDArray[np.int32
 def _most_known_first(
     status: NDArray[np.uint8], window: Window, tiles: bool, key: int, pixels: NDArray[np.int32]
 ) -> Generator[None, None, NDArray[np.int32]]:
-    from texlab_core.kernels.layers import count_known, tie_breakers
+    from texlab_core.kernels.layers import layer_keys
 
-    counts = np.empty(len(pixels), np.int32)
-    bits = np.empty(len(pixels), np.uint64)
+    # The same order however the pixels were found, in one piece or after a resume.
+    pixels.sort()
+    keys = np.empty(len(pixels), np.uint64)
     portion = max(1, OFFSETS_AT_ONCE // len(window.rows))
-    # The same order wherever the pixels were found first, in one piece or after a resume.
-    pixels = np.sort(pixels)
     for first in range(0, len(pixels), portion):
         part = slice(first, first + portion)
-        count_known(status, window.rows, window.columns, tiles, pixels[part], counts[part])
-        tie_breakers(np.uint64(key), status.shape[1], pixels[part], bits[part])
+        layer_keys(status, window.rows, window.columns, tiles, np.uint64(key), pixels[part], first, keys[part])
         yield
-    # One sortable number: 12 bits of missing neighbours, 26 of the hash, 26 of the place.
-    missing = (len(window.rows) - counts).astype(np.uint64)
-    places = np.arange(len(pixels), dtype=np.uint64)
-    numbers = (missing << np.uint64(52)) | ((bits >> np.uint64(38)) << np.uint64(26)) | places
-    numbers.sort()
+    keys.sort()
     yield
-    ordered: NDArray[np.int32] = pixels[(numbers & np.uint64(2**26 - 1)).astype(np.int64)]
+    keys &= np.uint64(2**26 - 1)
+    ordered: NDArray[np.int32] = pixels[keys]
     return ordered
