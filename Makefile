@@ -3,6 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
+SCREEN := -o xvfb_width=1920 -o xvfb_height=1200 -o xvfb_colordepth=24
 
 .PHONY: run test lint fmt bench wheel clean distclean
 .DEFAULT_GOAL := run
@@ -13,7 +14,7 @@ run: .venv/.ready-run
 # The last pytest run is the whole suite, so that its summary is the last line.
 test: lint
 	@if command -v Xvfb >/dev/null; then echo "== window tests under Xvfb"; \
-		TEXLAB_TEST_PLATFORM=xcb $(PY) -m pytest tests/gui -q -p no:cacheprovider; fi
+		TEXLAB_TEST_PLATFORM=xcb $(PY) -m pytest tests/gui -q $(SCREEN); fi
 	@echo "== all tests, off screen"
 	@$(PY) -m pytest -q --no-xvfb --cov --cov-report=term:skip-covered --coverage-floors
 

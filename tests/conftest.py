@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from pathlib import Path
     from weakref import WeakSet
 
+    from PySide6.QtCore import QPoint
+    from PySide6.QtWidgets import QWidget
+
 PLATFORM = os.environ.get("TEXLAB_TEST_PLATFORM", "offscreen")
 os.environ["QT_QPA_PLATFORM"] = PLATFORM
 os.environ["QT_LOGGING_RULES"] = "qt.qpa.*=false"
@@ -89,8 +92,8 @@ def no_leaked_qt(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 
 
 @pytest.fixture(autouse=True)
-def window_manager(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Give every window that appears the keyboard, as a window manager does; a bare X server has none."""
+def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Make a bare X server a desktop: windows that appear get the keyboard, and moves of the mouse arrive."""
     if PLATFORM != "xcb" or "gui" not in request.path.parts:
         yield
         return
@@ -102,16 +105,28 @@ def window_manager(request: pytest.FixtureRequest) -> Iterator[None]:
 
     class Manager(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-            if event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow():
-                if watched.windowType() in activated:
-                    watched.activateWindow()
-                    app.processEvents()
+            shown = event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow()
+            if shown and watched.windowType() in activated:
+                watched.activateWindow()
+                app.processEvents()
             return False
 
     manager = Manager()
     app.installEventFilter(manager)
+    monkeypatch.setattr("pytestqt.qtbot.QtBot.mouseMove", staticmethod(_move_mouse))
     yield
     app.removeEventFilter(manager)
+
+
+def _move_mouse(widget: QWidget, pos: QPoint, delay: int = -1) -> None:
+    """Move the pointer and wait for the server, which tells of a move only when there is one."""
+    from PySide6.QtGui import QCursor, QGuiApplication
+    from PySide6.QtTest import QTest
+
+    QCursor.setPos(QGuiApplication.primaryScreen().geometry().bottomRight())
+    QTest.qWait(20)
+    QTest.mouseMove(widget, pos, delay)
+    QTest.qWait(50)
 
 
 def _persists(left: Callable[[], list[str]]) -> bool:
