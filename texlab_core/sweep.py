@@ -297,9 +297,10 @@ def run_sweep(
     cells: dict[int, Cell] = {}
     with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
         try:
+            # A lone worker's transforms may use their usual threads; a place is one core.
+            threads = None if count == 1 and places is None else 1
             for index in range(len(sweep.jobs)):
-                # With one worker a transform may use its usual threads.
-                pool.submit(state.run_cell, index, None if count == 1 else 1)
+                pool.submit(state.run_cell, index, threads)
             while len(cells) < len(sweep.jobs):
                 if should_stop is not None and should_stop():
                     raise Cancelled
