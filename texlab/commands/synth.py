@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 HELP = "Make more of a texture and save it with its recipe."
 ORDER = 10
-_BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
+BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
 
 
 def configure(parser: Parser) -> None:
@@ -51,7 +51,7 @@ def configure(parser: Parser) -> None:
 def add_output_options(parser: Parser) -> None:
     """Add what ``synth`` and ``redo`` share."""
     parser.add_argument("--out", required=True, metavar="OUT.png", help="file to write: .png, .tif or .jpg")
-    parser.add_argument("--bits", choices=_BITS, help="for each sample: 8 (default), 16, or float in a TIFF")
+    parser.add_argument("--bits", choices=BITS, help="for each sample: 8 (default), 16, or float in a TIFF")
     parser.add_argument("--maps", metavar="DIR", help="also save the maps and curves in this folder")
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -66,7 +66,7 @@ def execute(args: argparse.Namespace) -> int:
     seed = parse_number("seed", args.seed, int)
     scale = parse_number("scale", args.scale, float)
     crop = None if args.crop is None else parse_crop(args.crop)
-    outputs = check_outputs(args, _BITS[args.bits or "8"])
+    outputs = check_outputs(args, BITS[args.bits or "8"])
     refuse_overwriting(outputs.image, args.image)
 
     from texlab.commands._sources import load_inputs
