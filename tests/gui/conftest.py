@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from mouse import drag, handle_point, move  # noqa: F401
 from PIL import Image
-from PySide6.QtCore import QPoint, Qt
 
 from tests.stub_method import stub  # noqa: F401
 from texlab import app as texlab_app
@@ -91,44 +91,3 @@ def result_image(explorer: Explorer, column_id: int) -> Any:
     assert scene is not None
     assert scene.result is not None, scene.message
     return scene.result.image
-
-
-def handle_point(slider: Any, share: float | None = None) -> QPoint:
-    """Return where the slider's handle is, or would be at a share of the range."""
-    from PySide6.QtWidgets import QStyle, QStyleOptionSlider
-
-    option = QStyleOptionSlider()
-    slider.initStyleOption(option)
-    if share is not None:
-        option.sliderPosition = round(slider.minimum() + share * (slider.maximum() - slider.minimum()))
-    rectangle = slider.style().subControlRect(
-        QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, slider
-    )
-    return rectangle.center()
-
-
-def drag(qtbot: Any, widget: Any, places: list[QPoint]) -> None:
-    """Press at the first place, move over the others, release at the last."""
-    button = Qt.MouseButton.LeftButton
-    qtbot.mousePress(widget, button, pos=places[0])
-    for place in places[1:]:
-        move(qtbot, widget, place)
-    qtbot.mouseRelease(widget, button, pos=places[-1])
-
-
-def move(qtbot: Any, widget: Any, place: QPoint) -> None:
-    """Move the mouse with the left button down (QTest's own moves carry no buttons)."""
-    from PySide6.QtCore import QEvent, QPointF
-    from PySide6.QtGui import QMouseEvent
-    from PySide6.QtWidgets import QApplication
-
-    left = Qt.MouseButton.LeftButton
-    event = QMouseEvent(
-        QEvent.Type.MouseMove,
-        QPointF(place),
-        QPointF(widget.mapToGlobal(place)),
-        Qt.MouseButton.NoButton,
-        left,
-        Qt.KeyboardModifier.NoModifier,
-    )
-    QApplication.sendEvent(widget, event)
