@@ -168,6 +168,21 @@ def log_spectral_distance(first: Spectrum, second: Spectrum) -> float:
     return math.sqrt(float(np.sum(weights * difference**2) / max(weights.sum(), 1e-12)))
 
 
+def spectral_difference(first: Spectrum, second: Spectrum) -> Plane:
+    """Return by how many dB the second spectrum lies above the first, cell by cell.
+
+    Returns
+    -------
+    difference
+        (v, u) float32 with at most 64 cells on each axis, zero frequency at (v // 2, u // 2). Its root mean square
+        is the :func:`log_spectral_distance`.
+    """
+    one, other, weights = _common_cells(first, second)
+    decibels = np.where(weights > 0, 10 * np.log10((other + QUANTIZATION) / (one + QUANTIZATION)), 0.0)
+    cells_u = min(_CELLS, first.width, second.width)
+    return Spectrum(decibels.astype(np.float32), cells_u).full()
+
+
 def total_variation(first: Spectrum, second: Spectrum) -> float:
     """Return which share of the power, 0 to 1, would have to move to make two spectra alike, by cells."""
     one, other, weights = _common_cells(first, second)
