@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from PySide6.QtCore import Qt
+
 from texlab.recent import Recent, Same
 from texlab_core.errors import Cancelled
-from texlab_core.stats.bands import channel_names, projection, split
+from texlab_core.stats.bands import WITH_ORIENTATIONS, WITH_SCALES, channel_names, projection, split
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,7 +19,20 @@ if TYPE_CHECKING:
     from texlab_core.stats.bands import Band, Channel, PyramidKind
     from texlab_core.steps import FloatImage
 
-TITLES: dict[PyramidKind, str] = {"steerable": "Steerable", "laplacian": "Laplacian", "gaussian": "Gaussian"}
+# Name and description of every kind.
+KINDS: dict[PyramidKind, tuple[str, str]] = {
+    "steerable": ("Steerable", "Oriented bands per scale, and two residuals; they add up to the image"),
+    "laplacian": ("Laplacian", "What each scale has beyond the next coarser one; they add up to the image"),
+    "gaussian": ("Gaussian", "The image, smoothed and halved again and again"),
+    "oriented": (
+        "Derivatives",
+        "First (′, edges) and second (″, lines) derivatives of every level: the features of De Bonet. "
+        "His threshold table counts angles counter-clockwise, this tab clockwise",
+    ),
+    "gabor": ("Gabor", "Symmetric Gabor filters, four octaves by four orientations, as in the MSG method"),
+    "gabor magnitude": ("Gabor, magnitude", "Local amplitude of Gabor filters in quadrature"),
+    "filter bank": ("Filter bank", "Two spots and six bars on every level (Forsyth and Ponce, Fig. 11.3)"),
+}
 CACHE_BYTES = 96 * 2**20
 DEFAULT_SCALES, DEFAULT_ORIENTATIONS = 4, 4
 
@@ -77,8 +92,11 @@ class PyramidControls:
     """
 
     def __init__(self, dock: FramedDock, kinds: tuple[PyramidKind, ...]) -> None:
-        items = [(TITLES[kind], kind) for kind in kinds]
-        self.kind = dock.add_choice("kind", "Pyramid", "Which pyramid splits the image", items, self._changed)
+        items = [(KINDS[kind][0], kind) for kind in kinds]
+        self.kind = dock.add_choice("kind", "Pyramid", "", items, self._changed)
+        for place, kind in enumerate(kinds):
+            self.kind.setItemData(place, KINDS[kind][1], Qt.ItemDataRole.ToolTipRole)
+        self._describe()
         tip = "Number of scales; follows the chosen column until it is changed here"
         self.scales = dock.add_number("scales", "scales", tip, (0, 8), dock.ask)
         tip = "Oriented bands per scale; follows the chosen column until it is changed here"
@@ -90,7 +108,10 @@ class PyramidControls:
     @property
     def settings(self) -> PyramidSettings:
         """What the controls say."""
-        return PyramidSettings(self.kind.currentData(), self.scales.value(), self.orientations.value())
+        kind = self.kind.currentData()
+        # What the kind does not have stays 1, so that nothing is computed again when it changes.
+        scales = self.scales.value() if kind in WITH_SCALES else 1
+        return PyramidSettings(kind, scales, self.orientations.value() if kind in WITH_ORIENTATIONS else 1)
 
     def follow(self, scene: Scene) -> None:
         """Take scales and orientations of the chosen column when it, or they, have changed."""
@@ -109,8 +130,9 @@ class PyramidControls:
 
     def show(self, visible: bool) -> None:
         """Show the controls that matter."""
-        self.scales.setVisible(visible)
-        self.orientations.setVisible(visible and self.kind.currentData() == "steerable")
+        kind = self.kind.currentData()
+        self.scales.setVisible(visible and kind in WITH_SCALES)
+        self.orientations.setVisible(visible and kind in WITH_ORIENTATIONS)
 
     def _set(self, scales: int, orientations: int) -> None:
         for box, value in ((self.scales, scales), (self.orientations, orientations)):
@@ -118,6 +140,10 @@ class PyramidControls:
             box.setValue(value)
             box.blockSignals(blocked)
 
+    def _describe(self) -> None:
+        self.kind.setToolTip(f"How the image is split. {KINDS[self.kind.currentData()][1]}")
+
     def _changed(self) -> None:
+        self._describe()
         self.show(True)
         self._dock.ask()

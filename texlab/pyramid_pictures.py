@@ -179,23 +179,33 @@ def band_scales(bands: tuple[Band, ...], request: PyramidRequest) -> dict[BandKe
     """Return the colour scale of every band, from the exemplar's.
 
     Signed bands are symmetric around zero up to three standard deviations: their own, or the largest of all.
-    Low-pass bands are gray from 0 to 1; those of a principal axis as far as three standard deviations go.
+    Magnitudes begin at zero. Low-pass bands are gray from 0 to 1; those of a principal axis as far as three
+    standard deviations go.
     """
-    spreads = {band.key: float(band.plane.std(dtype=np.float64)) for band in bands}
-    largest = max((spreads[band.key] for band in bands if band.signed), default=0.0)
+    spreads = {band.key: _spread(band) for band in bands}
+    largest = max((spreads[band.key] for band in bands if band.span != "gray"), default=0.0)
     scales = {}
     for band in bands:
-        spread = largest if request.common and band.signed else spreads[band.key]
+        spread = largest if request.common and band.span != "gray" else spreads[band.key]
         limit = SPREADS * spread or 1.0
-        if band.signed or request.channel.startswith("axis"):
+        if band.span == "positive":
+            scales[band.key] = Scale(0.0, limit)
+        elif band.signed or request.channel.startswith("axis"):
             scales[band.key] = Scale(-limit, limit)
         else:
             scales[band.key] = Scale(0.0, 1.0)
     return scales
 
 
+def _spread(band: Band) -> float:
+    """Return a band's standard deviation; for a magnitude, that of the values whose amplitude it is."""
+    if band.span == "positive":
+        return float(np.sqrt(np.square(band.plane, dtype=np.float64).mean() / 2))
+    return float(band.plane.std(dtype=np.float64))
+
+
 def band_table(band: Band) -> NDArray[np.uint8]:
-    """Return the colours of a band: diverging around zero, gray for a low-pass."""
+    """Return the colours of a band: diverging around zero; gray for a low-pass and for magnitudes."""
     return DIVERGING_TABLE if band.signed else GRAY_TABLE
 
 

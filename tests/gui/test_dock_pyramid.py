@@ -296,3 +296,44 @@ def test_no_scales_leave_the_residuals(dock, scene):
     dock.pyramid.scales.setValue(0)
     answer = feed(dock, scene)
     assert [band.label for band in answer.exemplar.bands] == ["high", "low"]
+
+
+@pytest.mark.parametrize("kind", ["oriented", "gabor", "gabor magnitude", "filter bank"])
+def test_kinds_for_looking_at_cannot_be_edited_and_say_why(dock, scene, images, qtbot, kind):
+    feed(dock, scene)
+    dock.edit.setChecked(True)
+    set_choice(dock.pyramid.kind, kind)
+    answer = feed(dock, scene)
+    assert not answer.request.editing
+    assert not dock.edit.isEnabled()
+    assert "do not add up" in dock.edit.toolTip()
+    assert dock.pyramid.kind.itemData(dock.pyramid.kind.currentIndex(), Qt.ItemDataRole.ToolTipRole)
+    assert dock.pyramid.scales.isVisible() == (not kind.startswith("gabor"))
+    assert dock.pyramid.orientations.isVisible() == (kind == "oriented")
+    expected = split(projection(images[0], "luma").plane(images[0]), kind, 3, 4)
+    for band, other in zip(answer.exemplar.bands, expected, strict=True):
+        assert np.array_equal(band.plane, other.plane)
+    answer = open_band(dock, scene, qtbot, 1)
+    assert dock.detail.title.text().lower() == answer.exemplar.bands[1].title.lower()
+    set_choice(dock.pyramid.kind, "steerable")
+    assert feed(dock, scene).request.editing
+    assert "(E)" in dock.edit.toolTip()
+
+
+def test_magnitudes_are_gray_from_zero(dock, scene):
+    feed(dock, scene)
+    set_choice(dock.pyramid.kind, "gabor magnitude")
+    answer = feed(dock, scene)
+    band, cell = answer.exemplar.bands[0], answer.exemplar.layout.cells[0]
+    tile = answer.exemplar.picture[cell.top : cell.top + cell.height, cell.left : cell.left + cell.width]
+    limit = 3 * np.sqrt(np.square(band.plane.astype(np.float64)).mean() / 2)
+    assert np.array_equal(tile, colouring.gray(band.plane, 0, limit))
+
+
+def test_gabor_is_not_computed_again_for_other_scales(dock, images):
+    feed(dock, scene_of(column_of(images[1]), exemplar=images[0]))
+    set_choice(dock.pyramid.kind, "gabor")
+    one = feed(dock, scene_of(column_of(images[1]), exemplar=images[0]))
+    dock.pyramid.scales.setValue(2)
+    other = feed(dock, scene_of(column_of(images[1]), exemplar=images[0]))
+    assert other.request.settings == one.request.settings

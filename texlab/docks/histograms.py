@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from texlab.comparison import Comparison, compare
 from texlab.comparison_view import HistogramPlot, NumbersTable
 from texlab.dock_frame import FramedDock, replace_items, shown_image
-from texlab.pyramid_controls import BandCache, PyramidControls, PyramidSettings, channel_items
+from texlab.pyramid_controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
 from texlab.recent import Same
 from texlab.scene import Question
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
@@ -101,7 +101,7 @@ class HistogramsDock(FramedDock):
         self.channel = self.add_choice(
             "channel", "Plane", "Which plane of the image: luma, a colour, or a principal axis", [], self.ask
         )
-        self.pyramid = PyramidControls(self, ("steerable", "laplacian"))
+        self.pyramid = PyramidControls(self, tuple(kind for kind in KINDS if kind != "gaussian"))
         self.band = self.add_choice("band", "Subband", "Which subband (level 0 is the finest)", [], self.ask)
         self.log = self.add_switch(
             "log", "Log", "Logarithmic shares: the tails can be seen", lambda _: self._redraw()

@@ -13,12 +13,12 @@ from texlab.band_detail import BandDetail
 from texlab.dock_frame import FramedDock, replace_items, shown_image
 from texlab.mosaic_view import MosaicView
 from texlab.plots import PicturePane, number
-from texlab.pyramid_controls import BandCache, PyramidControls, channel_items
+from texlab.pyramid_controls import KINDS, BandCache, PyramidControls, channel_items
 from texlab.pyramid_pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.recent import Recent, Same
 from texlab.scene import Question
 from texlab.views.image_pane import ViewLink
-from texlab_core.stats.bands import band_keys
+from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 NARROW = 760
 GAINS = ((0.0, "Mute", "0"), (1.0, "×1", "1"), (2.0, "×2", "2"), (4.0, "×4", "4"))
 SCALES = (("Own scales", False), ("One scale", True))
+EDIT_TIP = "Mute or boost bands and see the exemplar put together again (E)"
+VIEW_ONLY_TIP = "These bands are for looking at: they do not add up to the image exactly, so none can be muted"
 LAYOUTS = (("Equal tiles", "equal"), ("Pyramid", "pyramid"))
 
 
@@ -88,7 +90,7 @@ class PyramidDock(FramedDock):
         layout.addWidget(self.splitter)
 
     def _make_controls(self) -> None:
-        self.pyramid = PyramidControls(self, ("steerable", "laplacian", "gaussian"))
+        self.pyramid = PyramidControls(self, tuple(KINDS))
         self.channel = self.add_choice(
             "channel", "Plane", "Which plane of the image: luma, a colour, or a principal axis", [], self.ask
         )
@@ -96,8 +98,7 @@ class PyramidDock(FramedDock):
         self.scaling = self.add_choice("scaling", "Colour scale", tip, SCALES, self.ask)
         tip = "All bands equally large, or in the proportion of their sizes"
         self.layout_choice = self.add_choice("layout", "Arrangement", tip, LAYOUTS, self.ask)
-        tip = "Mute or boost bands and see the exemplar put together again (E)"
-        self.edit = self.add_switch("edit", "Edit", tip, self._edit_toggled)
+        self.edit = self.add_switch("edit", "Edit", EDIT_TIP, self._edit_toggled)
         self._gain_group = QButtonGroup(self)
         for gain, label, key in GAINS:
             words = "Leave out the chosen band" if gain == 0 else f"Multiply the chosen band by {gain:g}"
@@ -159,8 +160,9 @@ class PyramidDock(FramedDock):
 
     def _request(self, shape: tuple[int, int], *, has_result: bool) -> PyramidRequest:
         settings = self.pyramid.settings
-        editable = settings.kind != "gaussian"
+        editable = settings.kind in COLLAPSIBLE
         self.edit.setEnabled(editable)
+        self.edit.setToolTip(EDIT_TIP if editable else VIEW_ONLY_TIP)
         editing = editable and self.edit.isChecked()
         keys = band_keys(settings.kind, settings.levels, settings.orientations)
         if self._selected not in keys:

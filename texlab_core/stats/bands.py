@@ -1,7 +1,8 @@
 """Subbands for looking at: one plane of an image split by any of the pyramids, and put together with other gains.
 
 Nothing here is used for synthesis. Borders are reflected, so that an image that does not tile shows no edges that
-it does not have.
+it does not have. Angles are those of the waves that a band answers to, counted from the columns' axis towards the
+rows' (0: vertical stripes), whatever the convention of the method that uses the filters.
 """
 
 from __future__ import annotations
@@ -11,17 +12,23 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from texlab_core.stats import filter_bands
 from texlab_core.transforms import gaussian, laplacian, steerable
 from texlab_core.transforms.steerable import BandKey
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from texlab_core.steps import FloatImage
 
-PyramidKind = Literal["steerable", "laplacian", "gaussian"]
+PyramidKind = Literal["steerable", "laplacian", "gaussian", "oriented", "gabor", "gabor magnitude", "filter bank"]
+Span = Literal["signed", "positive", "gray"]
+COLLAPSIBLE: tuple[PyramidKind, ...] = ("steerable", "laplacian")
+# Kinds whose number of scales, or of orientations, is the user's.
+WITH_SCALES: tuple[PyramidKind, ...] = ("steerable", "laplacian", "gaussian", "oriented", "filter bank")
+WITH_ORIENTATIONS: tuple[PyramidKind, ...] = ("steerable", "oriented")
 Channel = Literal["luma", "red", "green", "blue", "axis 1", "axis 2", "axis 3"]
 CHANNELS: tuple[Channel, ...] = get_args(Channel)
 
@@ -40,24 +47,28 @@ class Band:
     Parameters
     ----------
     key
-        Its place; ``kind`` is highpass, oriented, bandpass or lowpass.
+        Its place; ``kind`` is highpass, oriented, bandpass or lowpass. Where a level has filters of several kinds,
+        ``orientation`` numbers all of them.
     plane
         (h, w) float32.
     title
         Name in words, with the angle of an oriented band.
     label
         Name for a small place.
+    span
+        Whether the values scatter around zero, begin at zero, or are gray levels.
     """
 
     key: BandKey
     plane: NDArray[np.float32]
     title: str
     label: str
+    span: Span = "signed"
 
     @property
     def signed(self) -> bool:
         """Whether the values scatter around zero."""
-        return self.key.kind != "lowpass"
+        return self.span == "signed"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +127,9 @@ def projection(exemplar: FloatImage, channel: Channel) -> Projection:
 
 def most_levels(size: Sequence[int], kind: PyramidKind) -> int:
     """Return the largest number of levels for a plane of this height and width."""
-    return steerable.max_levels(size) if kind == "steerable" else gaussian.max_levels(size)
+    if kind == "steerable":
+        return steerable.max_levels(size)
+    return filter_bands.most_derived(size) if kind == "oriented" else gaussian.max_levels(size)
 
 
 def split(
@@ -133,34 +146,43 @@ def split(
     plane
         (H, W) float32.
     kind
-        ``gaussian`` gives the plane itself and ``levels`` reductions of it.
+        ``gaussian`` gives the plane itself and ``levels`` reductions of it; ``oriented`` the first and second
+        derivatives of each of them, ``filter bank`` spots and bars. ``gabor`` gives the answers of the symmetric
+        filters, ``gabor magnitude`` the local amplitudes; an octave below the finest keeps every second sample.
     levels, orientations
-        Levels besides the residuals; orientations matter to the steerable pyramid only.
+        Levels besides the residuals, where the kind is one of ``WITH_SCALES``, and orientations, of
+        ``WITH_ORIENTATIONS``.
     look
-        Called between the bands of a steerable pyramid; may raise to stop.
+        Called between the bands; may raise to stop.
     """
+    look()
     levels = min(levels, most_levels(plane.shape, kind))
-    planes: Sequence[NDArray[np.float32]]
-    if kind == "steerable":
-        planes = _reflected_bands(plane, levels, orientations, look)
-    else:
-        planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels)
-    keys = band_keys(kind, levels, orientations)
-    return tuple(Band(key, each, *names(key, kind, orientations)) for key, each in zip(keys, planes, strict=True))
+    planes: Iterable[NDArray[np.float32]]
+    match kind:
+        case "steerable":
+            planes = _reflected_bands(plane, levels, orientations)
+        case "oriented":
+            planes = filter_bands.derived(plane, levels, orientations)
+        case "filter bank":
+            planes = filter_bands.spots_and_bars(plane, levels)
+        case "gabor" | "gabor magnitude":
+            planes = filter_bands.gabor(plane, magnitude=kind == "gabor magnitude")
+        case _:
+            planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels)
+    bands = []
+    for key, each in zip(band_keys(kind, levels, orientations), planes, strict=True):
+        look()
+        bands.append(Band(key, each, *names(key, kind, orientations), span(key, kind)))
+    return tuple(bands)
 
 
-def _reflected_bands(
-    plane: NDArray[np.float32], levels: int, orientations: int, look: Callable[[], None]
-) -> list[NDArray[np.float32]]:
-    """Return the bands of ``steerable.build_reflected``, one after the other."""
+def _reflected_bands(plane: NDArray[np.float32], levels: int, orientations: int) -> Iterator[NDArray[np.float32]]:
+    """Yield the bands of ``steerable.build_reflected``."""
     mirrored = steerable.mirror(plane)
     transform = steerable.Transform.of(mirrored, levels, orientations)
     spectrum = transform.forward(mirrored)
-    planes = []
     for key in transform.keys:
-        look()
-        planes.append(steerable.quadrant(transform.band(spectrum, key), plane.shape, key.level))
-    return planes
+        yield steerable.quadrant(transform.band(spectrum, key), plane.shape, key.level)
 
 
 def band_keys(kind: PyramidKind, levels: int, orientations: int) -> tuple[BandKey, ...]:
@@ -169,11 +191,24 @@ def band_keys(kind: PyramidKind, levels: int, orientations: int) -> tuple[BandKe
         return steerable.band_keys(levels, orientations)
     if kind == "gaussian":
         return tuple(BandKey("lowpass", level) for level in range(levels + 1))
-    return (*(BandKey("bandpass", level) for level in range(levels)), BandKey("lowpass", levels))
+    if kind == "laplacian":
+        return (*(BandKey("bandpass", level) for level in range(levels)), BandKey("lowpass", levels))
+    levels, filters, residual = filter_bands.layout(kind, levels, orientations)
+    each = (BandKey("oriented", level, number) for level in range(levels) for number in range(filters))
+    return (*each, BandKey("lowpass", residual))
+
+
+def span(key: BandKey, kind: PyramidKind) -> Span:
+    """Return which values a subband has."""
+    if key.kind == "lowpass":
+        return "gray"
+    return "positive" if kind == "gabor magnitude" else "signed"
 
 
 def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]:
     """Return a subband's title and label."""
+    if key.kind == "oriented" and kind != "steerable":
+        return filter_bands.names(key, kind, orientations)
     if key.kind == "highpass":
         return "high-pass residual", "high"
     if key.kind == "oriented":
@@ -218,10 +253,10 @@ def amplify(
     Raises
     ------
     ValueError
-        For a Gaussian pyramid: its levels do not add up to the image.
+        For any other kind: its bands do not add up to the image.
     """
-    if kind == "gaussian":
-        raise ValueError("A Gaussian pyramid cannot be collapsed.")
+    if kind not in COLLAPSIBLE:
+        raise ValueError(f"A pyramid of the kind {kind} cannot be collapsed.")
     if all(gain == 1 for gain in gains.values()):
         return image
     levels = min(levels, most_levels(image.shape, kind))
