@@ -35,8 +35,8 @@ class Step:
     frame
         Name of a stage worth keeping for the scrubber ("noise", "iteration 3", "level 2"); needs a ``preview``.
     state
-        Makes a snapshot, named arrays of which an ``ArraysInput`` can be made, so that a job with this input goes on
-        from here; call it before the computation goes on, or after it was stopped at this step.
+        Makes a snapshot, named arrays of which an ``ArraysInput`` can be made, so that a job with this input goes
+        on from here; call it before the computation goes on, or after it was stopped at this step.
     phase
         Filled in by ``run``.
     """

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from conftest import drag, ids, result_image, wait_idle
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
+from tests.gui.conftest import drag, ids, result_image, wait_idle
 from texlab.docks.fill import FillDock, read_mask
 from texlab.views.mask_canvas import paint_line
 from texlab_core.errors import InputError

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from conftest import drag, handle_point, hb, ids, result_image, wait_idle
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
 
+from tests.gui.conftest import drag, handle_point, hb, ids, result_image, wait_idle
 from texlab_core.images import as_exemplar
 from texlab_core.run import Job, run
 
