@@ -205,10 +205,16 @@ def test_profiles_have_their_peak_at_the_wave(dock, qtbot):
     assert x[np.argmax(y)] == pytest.approx(0, abs=1.5)
     x, y = curves["result"]
     assert x[np.argmax(y)] == pytest.approx(90, abs=1.5)
-    QApplication.processEvents()
-    centre = dock.radial.graph.viewport().rect().center()
-    qtbot.mouseMove(dock.radial.graph.viewport(), centre)
-    assert "c/px, period" in dock.readout.text()
+    graph = dock.radial.graph
+
+    def told():
+        where = dock.radial.view.mapViewToScene(dock.radial.view.viewRect().center())
+        qtbot.mouseMove(graph.viewport(), graph.mapFromScene(where) + QPoint(1, 0))
+        qtbot.mouseMove(graph.viewport(), graph.mapFromScene(where))
+        assert "c/px, period" in dock.readout.text()
+
+    # The plot gets its place from the layout a moment later.
+    qtbot.waitUntil(told)
     assert "result" in dock.readout.text()
 
 
