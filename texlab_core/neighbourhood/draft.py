@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from texlab_core.steps import FloatImage
 
 GUESSES = 6
-# Comparisons of one pixel with one pixel that take about 60 ms.
-_COMPARISONS = 60_000_000
+# Comparisons of one pixel with one pixel that take some 70 ms.
+_COMPARISONS = 80_000_000
 
 
 def draft(
