@@ -1,8 +1,8 @@
 """Efros-Leung: CPU time times a yardstick's rate, worst cases, drafts, waiting between steps. Judges nothing.
 
 The yardstick is a compiled loop that adds squared int32 differences for 1024 candidates: a subtraction, a
-multiplication and an addition each, in operations per second in the same process. CPU time times this rate is how many
-of its operations would have taken as long.
+multiplication and an addition each, in operations per second in the same process. CPU time times this rate is how
+many of its operations would have taken as long.
 """
 
 from __future__ import annotations

@@ -115,6 +115,10 @@ def test_a_larger_image_goes_on_from_what_is_there() -> None:
     start = np.rint(large.image * 255).astype(int) * known[..., None]
     expected = oracle_for(large, known, start)
     np.testing.assert_array_equal(large.maps["source"].data[~known], expected.source[~known])
+    filled = small.maps["order"].data > 0
+    row, column = np.argwhere(filled)[3] + (9, 6)
+    assert explain(large.details, int(row), int(column)).earlier
+    assert not explain(large.details, 0, 0).earlier
 
 
 def test_a_finished_state_is_finished() -> None:

@@ -234,7 +234,7 @@ def synthesize(
     yield replace(last, state=state)
     for last in growth.run():
         yield replace(last, state=state)
-    grown = Grown(growth.canvas, model.pool, matching, growth.choice_key, state)
+    grown = Grown(growth.canvas, model.pool, matching, growth.choice_key, growth.since, state)
     return (yield from report(grown, exemplar, beginning.given, model.levels, last))
 
 

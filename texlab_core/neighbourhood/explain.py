@@ -30,6 +30,8 @@ class Grown:
         The image with its maps, the candidates, and how they were compared.
     choice_key
         Key of the hash that chose.
+    since
+        How many pixels were filled under other settings, in the runs that this one went on from.
     state
         Makes the arrays of an ``ArraysInput`` from which a larger image goes on.
     """
@@ -38,6 +40,7 @@ class Grown:
     pool: Pool
     matching: Matching
     choice_key: int
+    since: int
     state: Callable[[], Mapping[str, NDArray[np.generic]]]
 
 
@@ -51,6 +54,8 @@ class Explanation:
         Row and column in the result.
     given
         Whether it was known from the start; then there was no match.
+    earlier
+        Whether it was filled in an earlier run, under other settings: then this is how it would match under these.
     window
         (w, w, C) float32 in [0, 1]: what was known around it, mid-gray elsewhere.
     weights
@@ -67,6 +72,7 @@ class Explanation:
 
     pixel: tuple[int, int]
     given: bool
+    earlier: bool
     window: FloatImage
     weights: NDArray[np.float32]
     places: NDArray[np.int32]
@@ -110,7 +116,9 @@ def explain(grown: Grown, row: int, column: int, *, best: int = 12) -> Explanati
     chosen = None if source < 0 else (source // pool.width, source % pool.width)
     if given:
         none = np.empty((0, 2), np.int32)
-        return Explanation((row, column), True, shown, weights, none, np.empty(0), 0.0, 0.0, none, chosen, 0.0)
+        return Explanation(
+            (row, column), True, False, shown, weights, none, np.empty(0), 0.0, 0.0, none, chosen, 0.0
+        )
     rule = make_rule(matching, grown.choice_key)
     window = make_window(matching, canvas.values.shape[0])
     distances = np.empty(pool.plane)
@@ -123,11 +131,14 @@ def explain(grown: Grown, row: int, column: int, *, best: int = 12) -> Explanati
     limit = max((1.0 + matching.eps) * d_min, in_distance_units(matching.tau, matching.criterion))
     order = np.argsort(found, kind="stable")
     own = int(pool.stride * (source // pool.width + pool.margin) + source % pool.width + pool.margin)
-    # The match set comes from the exact comparison of the kernel, so that its size is the map's.
-    match_set = candidates[order[: int(canvas.matches[row, column])]]
+    earlier = moment <= grown.since
+    # The size of the match set was found in exact integers, and d as shown is rounded.
+    count = np.count_nonzero(found <= limit) if earlier else int(canvas.matches[row, column])
+    match_set = candidates[order[:count]]
     return Explanation(
         pixel=(row, column),
         given=False,
+        earlier=earlier,
         window=shown,
         weights=weights,
         places=_positions(candidates[order[:best]], pool),

@@ -143,7 +143,7 @@ def _check_state(state: ArraysInput, exemplar: ImageInput, size: tuple[int, int]
         arrays["values"].shape == (exemplar.channels, height, width)
         and all(arrays[name].shape == (height, width) for name in ("source", "order", "matches", "d_min"))
         and arrays["given"].shape in ((height, width, exemplar.channels), (0,))
-        and arrays["numbers"].shape == (5,)
+        and arrays["numbers"].shape == (6,)
         and arrays["levels"].shape == (2,)
         and arrays["queue"].ndim == 1
     )
@@ -247,7 +247,7 @@ def make_growth(
     """Return the growth that goes on from a beginning: in its layer under the same settings, else in a new one."""
     progress = dict(beginning.progress)
     if progress.pop("settings", settings) != settings:
-        progress = {"filled": progress["filled"]}
+        progress = {"filled": progress["filled"], "since": progress["filled"]}
         status = beginning.canvas.status
         status[status == 2] = 0
     return Growth(
@@ -282,10 +282,10 @@ def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Ge
         if given is not None:
             given[place][rows] = arrays["given"][rows]
         yield
-    position, filled, filled_before_layer, row, started = (int(number) for number in arrays["numbers"])
+    position, filled, filled_before_layer, row, started, since = (int(number) for number in arrays["numbers"])
     if size != (height, width):
         canvas.status[canvas.status == 2] = 0
-        return Beginning(canvas, given, {"filled": filled})
+        return Beginning(canvas, given, {"filled": filled, "since": filled})
     queue = np.array(arrays["queue"], np.int32)
     # Exactly what waits in the queue is marked: a layer that was being collected is collected again.
     status = canvas.status.reshape(-1)
@@ -296,6 +296,7 @@ def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Ge
         "queue": queue,
         "position": position,
         "filled": filled,
+        "since": since,
         "filled_before_layer": filled_before_layer,
         "row": row,
         "started": bool(started),

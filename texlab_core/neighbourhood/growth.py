@@ -45,8 +45,9 @@ class Growth:
         The layer at hand; for a causal window the next row to look at.
     started
         Whether there was a first layer.
-    filled, position
-        How many pixels were filled so far (earlier runs included), and where in the queue to begin.
+    filled, since, position
+        How many pixels were filled so far (earlier runs included), how many of them under other settings, and
+        where in the queue to begin.
     filled_before_layer, layer_best, limit
         For the growing error limit: count and smallest distance of the layer, and the limit itself.
     """
@@ -62,6 +63,7 @@ class Growth:
     row: int = 0
     started: bool = False
     filled: int = 0
+    since: int = 0
     position: int = 0
     filled_before_layer: int = 0
     layer_best: float = float("inf")
@@ -115,7 +117,8 @@ class Growth:
         from texlab_core.kernels.neighbourhood_types import ERROR_LIMIT, LAYER_BEST
 
         levels = self.search.levels
-        numbers = [self._place(), self._filled(), self.filled_before_layer, self.row, int(self.started)]
+        begun = self.filled_before_layer, self.row, int(self.started), self.since
+        numbers = [self._place(), self._filled(), *begun]
         arrays = {name: value.copy() for name, value in self.canvas._asdict().items()}
         return arrays | {
             "queue": self.queue.copy(),
