@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from texlab.session import Column, Sample, Session, State
     from texlab.theme import ThemeSource
-    from texlab_core.inputs import Crop, ImageInput
+    from texlab_core.inputs import Crop, ImageInput, Input
     from texlab_core.params import Params
 
 log = logging.getLogger(__name__)
@@ -60,7 +60,8 @@ class Controller(QObject):
     """Runs columns when the session changes and tells the window what to show.
 
     ``scene_changed(scene)`` after every change; ``exemplar_ready(prepared)`` when another exemplar is in use;
-    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news.
+    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news;
+    ``open_wanted(source)`` when a dock wants a file or a texture of the gallery opened.
     """
 
     scene_changed = Signal(object)
@@ -69,6 +70,7 @@ class Controller(QObject):
     said = Signal(str)
     all_idle = Signal()
     marks_changed = Signal(object)
+    open_wanted = Signal(object)
 
     def __init__(self, session: Session, themes: ThemeSource, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -133,6 +135,14 @@ class Controller(QObject):
         """Take parameters from the form: drafts while a control is dragged, the full size on release."""
         with self._drag(not final):
             self.session.set_params(column_id, params, name, merge=("knob", column_id, name))
+        self._settle(final, (column_id,))
+
+    def edit_inputs(
+        self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, final: bool = True
+    ) -> None:
+        """Give a column other further inputs: drafts while something is dragged, the full size on release."""
+        with self._drag(not final):
+            self.session.set_inputs(column_id, inputs, text, merge=("inputs", column_id, text))
         self._settle(final, (column_id,))
 
     def edit_crop(self, crop: Crop | None, final: bool) -> None:
@@ -270,7 +280,8 @@ class Controller(QObject):
         column = self._column(column_id)
         worker = Worker(f"column-{column_id}", self._slots, self)
         method = find_method(column.method)
-        runtime = _Runtime(worker, ColumnScene(column_id, method.id, method.title, column.params))
+        scene = ColumnScene(column_id, method.id, method.title, column.params, inputs=column.inputs)
+        runtime = _Runtime(worker, scene)
         self._runtimes[column_id] = runtime
         worker.started.connect(lambda _: self._run_started(column_id))
         worker.progressed.connect(partial(self._run_progressed, column_id))
@@ -339,7 +350,8 @@ class Controller(QObject):
                 seed=session.seed,
             )
 
-        changes: dict[str, Any] = {"method": method.id, "title": method.title, "params": column.params}
+        changes: dict[str, Any] = {"method": method.id, "title": method.title}
+        changes |= {"params": column.params, "inputs": column.inputs}
         if not runtime.live:
             changes |= {
                 "status": "waiting",

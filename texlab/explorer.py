@@ -17,6 +17,7 @@ from texlab.controller import Controller, Prepared
 from texlab.crash import CrashHandler
 from texlab.dock_host import DockHost
 from texlab.docks import dock_classes
+from texlab.editors import register_editors
 from texlab.jobs import Slots, Task, Worker
 from texlab.memory import memory_text
 from texlab.opening import IMAGE_SUFFIXES, Opener
@@ -74,6 +75,7 @@ class Explorer(QObject):
         self._closed = False
         self._shown_exemplar = ""
         self._dock_slots = Slots(1)
+        register_editors()
         self.docks: list[Dock] = [make() for make in dock_classes()]
         self.hosts = [DockHost(dock, self._dock_slots, self) for dock in self.docks]
         self._thumbnails = Worker("thumbnails", parent=self)
@@ -172,6 +174,7 @@ class Explorer(QObject):
         parameters.edited.connect(controller.edit_params)
         parameters.reset_wanted.connect(controller.reset_params)
         parameters.help_wanted.connect(self.show_help)
+        parameters.dock_wanted.connect(window.raise_dock)
         session.changed.connect(lambda *_: self._show_session())
         session.history_changed.connect(self._show_session)
         session.selected.connect(lambda _: self._show_session())
@@ -179,6 +182,7 @@ class Explorer(QObject):
         controller.exemplar_ready.connect(self._show_exemplar)
         controller.marks_changed.connect(self._show_marks)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
+        controller.open_wanted.connect(self.opener.open)
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
         self.themes.changed.connect(self._show_theme)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from texlab.theme import Theme
-    from texlab_core.inputs import ImageInput
+    from texlab_core.inputs import ImageInput, Input
     from texlab_core.params import Params
     from texlab_core.steps import FloatImage, Result
 
@@ -59,6 +59,8 @@ class ColumnScene:
         Wall time of the run.
     resumable
         A stopped or finished run can be gone on with, also at a larger size.
+    inputs
+        What the column works on besides the exemplar (a code of 69 numbers, say).
     """
 
     id: int
@@ -76,6 +78,7 @@ class ColumnScene:
     metrics: Mapping[str, float] = field(default_factory=dict)
     elapsed_s: float = 0.0
     resumable: bool = False
+    inputs: tuple[tuple[str, Input], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
@@ -211,11 +211,13 @@ class Session(QObject):
             changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None)
             self.apply(self.state.with_column(changed), f"method {method}")
 
-    def set_inputs(self, column_id: int, inputs: tuple[tuple[str, Any], ...], text: str) -> None:
+    def set_inputs(
+        self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, *, merge: object | None = None
+    ) -> None:
         """Give a column other further inputs."""
         column = self.state.column(column_id)
         if column is not None:
-            self.apply(self.state.with_column(dataclasses.replace(column, inputs=inputs)), text)
+            self.apply(self.state.with_column(dataclasses.replace(column, inputs=inputs)), text, merge=merge)
 
     def add_column(self, method: str, params: Params, *, after: int | None = None) -> int:
         """Add a column behind the one with the id ``after`` (at the end without); returns its id."""
