@@ -13,6 +13,8 @@ from texlab_core.errors import RecipeError
 from texlab_core.image_writing import write_image
 from texlab_core.images import as_exemplar
 from texlab_core.inputs import Crop
+from texlab_core.params import describe
+from texlab_core.registry import find_method
 from texlab_core.run import Job
 from texlab_core.sweep import Cell, Vary, run_sweep, sweep_of
 from texlab_core.sweep_recipes import (
@@ -185,3 +187,15 @@ def test_a_sheet_shows_what_has_finished(texts):
         assert (windows[:, :, 0, ::20, ::20] == first[::20, ::20]).all(axis=(2, 3, 4)).any()
     failed = Cell(index=1, job=sweep.jobs[1], values=sweep.values(1), error="No.")
     assert not np.array_equal(sweep_sheet(sweep, [cells[0], failed]), part)
+
+
+def test_the_textbooks_assignment_c_is_ready_made():
+    knobs = [
+        axis.name for part in ("windows", "shapes", "criteria") for axis in find_sweep(f"efros-leung-{part}").axes
+    ]
+    assert knobs == ["window", "seed", "shape", "window", "criterion", "window"]
+    # Fig. 11.22 is a figure of Efros and Leung, who say which windows they used.
+    assert find_sweep("efros-leung-windows").axes[0].values == (5, 11, 15, 23)
+    for part, choices in (("shapes", "shape"), ("criteria", "criterion")):
+        offered = next(each for each in describe(find_method("efros-leung").params) if each.name == choices)
+        assert find_sweep(f"efros-leung-{part}").axes[0].values == tuple(offered.knob.choices)

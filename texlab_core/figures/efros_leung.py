@@ -9,6 +9,7 @@ import numpy as np
 from texlab_core.contact_sheet import Tile
 from texlab_core.figures import Figure
 from texlab_core.figures._tools import evidence, make, page, texture, title_of
+from texlab_core.sweep_recipes import find_sweep
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,33 +17,26 @@ if TYPE_CHECKING:
     from texlab_core.steps import FloatImage, Result
 
 TEXTURES = ("structured-scales", "letters-scattered", "stochastic-gravel")
-WINDOWS = (5, 9, 15, 23, 31)
 WORKS = ("structured-shingle", "quasiperiodic-knit", "oriented-zebra", "structured-scales")
 FAILS = ("structured-coins", "inhomogeneous-litbrick", "failure-symbols", "failure-spiral")
 
 
-def windows() -> NDArray[np.uint8]:
-    """Redraw the textbook's Fig. 11.22: the window grows from left to right."""
+def series(name: str) -> NDArray[np.uint8]:
+    """Draw the first knob of a ready-made sweep for its own exemplar and for some more."""
+    recipe = find_sweep(name)
+    if recipe.exemplar is None or recipe.size is None:
+        raise ValueError(f"The sweep {name} must say for which exemplar and which size it is.")
+    axis = recipe.axes[0]
+    names = dict.fromkeys((recipe.exemplar.name.removeprefix("gallery:"), *TEXTURES))
     tiles = []
-    for name in TEXTURES:
-        exemplar = texture(name, 64)
-        tiles.append(Tile(exemplar.pixels, (title_of(name),)))
-        for window in WINDOWS:
-            result = make("efros-leung", exemplar, 112, window=window)
-            tiles.append(Tile(result.image, (f"window {window}", evidence(result))))
-    return page(tiles, 1 + len(WINDOWS))
-
-
-def varied(knob: str, values: tuple[str, ...]) -> NDArray[np.uint8]:
-    """Draw every texture with every choice of one knob."""
-    tiles = []
-    for name in TEXTURES:
-        exemplar = texture(name, 64)
-        tiles.append(Tile(exemplar.pixels, (title_of(name),)))
-        for value in values:
-            chosen: dict[str, Any] = {knob: value}
-            tiles.append(Tile(make("efros-leung", exemplar, 128, **chosen).image, (f"{knob} {value}",)))
-    return page(tiles, 1 + len(values))
+    for each in names:
+        exemplar = texture(each, 64)
+        tiles.append(Tile(exemplar.pixels, (title_of(each),)))
+        for value in axis.values:
+            chosen: dict[str, Any] = {**recipe.parameters, axis.name: value}
+            result = make("efros-leung", exemplar, recipe.size, recipe.seed, **chosen)
+            tiles.append(Tile(result.image, (f"{axis.name} {value}", evidence(result))))
+    return page(tiles, 1 + len(axis.values))
 
 
 def tolerance() -> NDArray[np.uint8]:
@@ -85,16 +79,20 @@ def works_and_fails() -> NDArray[np.uint8]:
 
 
 FIGURES = (
-    Figure("efros-leung-windows.jpg", "The textbook's Fig. 11.22: the window grows.", windows),
+    Figure(
+        "efros-leung-windows.jpg",
+        "The textbook's Fig. 11.22: the window grows.",
+        lambda: series("efros-leung-windows"),
+    ),
     Figure(
         "efros-leung-shapes.jpg",
         "Assignment c: shapes of the window.",
-        lambda: varied("shape", ("square", "disc", "cross", "causal")),
+        lambda: series("efros-leung-shapes"),
     ),
     Figure(
         "efros-leung-criteria.jpg",
         "Assignment c: matching criteria.",
-        lambda: varied("criterion", ("ssd", "flat-ssd", "sad", "ncc")),
+        lambda: series("efros-leung-criteria"),
     ),
     Figure("efros-leung-tau.jpg", "Copying: results over maps of their sources.", tolerance),
     Figure("efros-leung-results.jpg", "Where the method works, and where it cannot.", works_and_fails),
