@@ -26,7 +26,7 @@ KINDS: dict[PyramidKind, tuple[str, str]] = {
     "gaussian": ("Gaussian", "The image, smoothed and halved again and again"),
     "oriented": (
         "Derivatives",
-        "First (′, edges) and second (″, lines) derivatives of every level: the features of De Bonet. "
+        "First (edges) and second (lines) derivatives of every level: the features of De Bonet. "
         "His threshold table counts angles counter-clockwise, this tab clockwise",
     ),
     "gabor": ("Gabor", "Symmetric Gabor filters, four octaves by four orientations, as in the MSG method"),

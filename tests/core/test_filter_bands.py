@@ -103,7 +103,13 @@ def test_second_derivatives_of_a_parabola():
         # In units of a pixel the parabola along (cos, sin) is ((cos + sin) t)^2 / 32^2.
         expected = 2 * (np.cos(angle) + np.sin(angle)) ** 2 / 1024
         assert found[4 + k].plane[2:-2, 2:-2] == pytest.approx(np.full((20, 26), expected), abs=1e-5)
-    assert [band.label for band in found[:5]] == ["0·0°′", "0·45°′", "0·90°′", "0·135°′", "0·0°″"]
+    assert [band.label for band in found[:5]] == [
+        "edge 0·0°",
+        "edge 0·45°",
+        "edge 0·90°",
+        "edge 0·135°",
+        "line 0·0°",
+    ]
     assert found[6].title == "level 0, lines (second derivative), waves along 90°"
 
 

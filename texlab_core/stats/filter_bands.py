@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 # Side of the derivative filters, as De Bonet has them.
 FILTER_SIDE = 5
 GABOR_OCTAVES, GABOR_ORIENTATIONS = 4, 4
-EDGE, LINE = "′", "″"
+EDGE, LINE = "edge", "line"
 
 
 def layout(kind: PyramidKind, levels: int, orientations: int) -> tuple[int, int, int]:
@@ -43,7 +43,7 @@ def names(key: BandKey, kind: PyramidKind, orientations: int) -> tuple[str, str]
         order, number = divmod(number, orientations)
         angle = f"{180 * number / orientations:.3g}°"
         words = ("edges (first derivative)", "lines (second derivative)")[order]
-        return f"level {level}, {words}, waves along {angle}", f"{level}·{angle}{(EDGE, LINE)[order]}"
+        return f"level {level}, {words}, waves along {angle}", f"{(EDGE, LINE)[order]} {level}·{angle}"
     if kind == "filter bank":
         spots = len(spots_bars.SPOTS)
         if number < spots:
