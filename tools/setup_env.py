@@ -54,7 +54,10 @@ def main(goal: str) -> int:
         return refuse(how_to_install(wanted))
     elif wanted:
         print(f"Without {' '.join(wanted)} the tests under a virtual X server are left out.", file=sys.stderr)
-    python = make_venv()
+    try:
+        python = make_venv()
+    except subprocess.CalledProcessError:
+        return refuse(f"The virtual environment {VENV} could not be made; the reason is above.")
     print(f"Installing TexLab and what it needs into {VENV.name} (once) ...", flush=True)
     pip = [str(python), "-m", "pip", "install", "--disable-pip-version-check"]
     quiet = [] if sys.stdout.isatty() else ["--quiet"]
