@@ -358,10 +358,12 @@ def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
 
 
 def number(value: float) -> str:
-    """Return a number with four digits that matter, for tables and read-outs."""
+    """Return a number with four digits that matter (whole numbers with all), for tables and read-outs."""
     value = value + 0.0  # no minus before zero
     if not np.isfinite(value):
         return "none"
-    if value != 0 and (abs(value) >= 1e5 or abs(value) < 1e-4):
+    if value == round(value) and abs(value) < 1e7:
+        return f"{value:.0f}"
+    if abs(value) >= 1e5 or abs(value) < 1e-4:
         return f"{value:.2e}"
-    return f"{value:.4g}"
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.4g}"

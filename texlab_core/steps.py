@@ -81,20 +81,33 @@ class Map:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A series of numbers: ``y`` over ``x``, (n,) float64 each."""
+    """A series of numbers: ``y`` over ``x``, (n,) float64 each.
+
+    A ``reference`` is drawn beside other curves of the same axes, for holding them against it.
+    """
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     title: str
     x_label: str = "iteration"
     y_label: str = ""
+    reference: bool = False
 
     @classmethod
-    def of(cls, y: Any, title: str, *, x: Any = None, x_label: str = "iteration", y_label: str = "") -> Curve:
+    def of(
+        cls,
+        y: Any,
+        title: str,
+        *,
+        x: Any = None,
+        x_label: str = "iteration",
+        y_label: str = "",
+        reference: bool = False,
+    ) -> Curve:
         """Make a curve from any sequences; ``x`` counts from 0 when left out."""
         values = np.asarray(y, dtype=np.float64)
         places = np.arange(values.size, dtype=np.float64) if x is None else np.asarray(x, dtype=np.float64)
-        return cls(places, values, title, x_label, y_label)
+        return cls(places, values, title, x_label, y_label, reference)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -149,17 +149,44 @@ def test_live_curves_grow_while_a_column_runs(dock):
     assert dock.answer.own["mean-distance"].y.tolist() == [9.0]
 
 
-def test_zeros_are_left_out_of_a_logarithmic_plot(dock):
+def test_zeros_lie_below_all_else_in_a_logarithmic_plot(dock):
     found = {"error": Curve.of([1.0, 0.0, np.nan, 0.1], "Error")}
     feed(dock, scene_of(column_of(noise(), curves=found), exemplar=noise()))
     x, y = points(dock.plot)[0]
-    assert x.tolist() == [0, 3]
-    assert y == pytest.approx([0, -1])
+    assert x.tolist() == [0, 1, 3]
+    assert y == pytest.approx([0, np.log10(0.05), -1])
 
 
-def test_nothing_but_zeros(dock):
-    feed(dock, scene_of(column_of(noise(), curves={"error": Curve.of([0.0], "Error")}), exemplar=noise()))
-    assert points(dock.plot)[0][0].size == 0
+def test_nothing_but_zeros_is_drawn_linearly(dock):
+    feed(dock, scene_of(column_of(noise(), curves={"error": Curve.of([0.0, 0.0], "Error")}), exemplar=noise()))
+    assert points(dock.plot)[0][1].tolist() == [0, 0]
+
+
+def growth(unit="gray levels²", last=100):
+    axes = {"x_label": "pixels filled", "y_label": unit}
+    return {
+        "distance": Curve.of([4, 0, 9], "Smallest distance", x=[10, 50, last], **axes),
+        "leave-one-out": Curve.of([25, 25], "Own windows", x=[0, last], reference=True, **axes),
+    }
+
+
+def test_a_reference_is_drawn_beside_the_curve_and_is_no_choice(dock, qtbot):
+    first = column_of(noise(), title="A", curves=growth())
+    other = column_of(noise(), column_id=2, title="B", curves=growth("", 120))
+    feed(dock, scene_of(first, other, exemplar=noise()))
+    assert [dock.curve.itemText(place) for place in range(dock.curve.count())] == ["Smallest distance"]
+    curve, reference = points(dock.plot)
+    assert curve[1] == pytest.approx(np.log10([4, 2, 9]))
+    assert reference[0].tolist() == [0, 100]
+    assert reference[1] == pytest.approx(np.log10([25, 25]))
+    # The other column's distances have another unit; the small plot would show nothing else.
+    assert ">B<" not in dock.legend.text()
+    assert "Own windows 25" in dock.legend.text()
+    assert not dock.all.isVisible()
+    assert dock.plot._texts[0][0].toPlainText() == "Own windows"
+    same = column_of(noise(), column_id=2, title="B", curves=growth())
+    feed(dock, scene_of(first, same, exemplar=noise()))
+    assert len(points(dock.plot)) == 3
 
 
 def test_a_result_without_curves_says_so(dock):

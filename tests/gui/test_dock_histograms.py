@@ -198,8 +198,17 @@ def test_density_counts_outliers_in_the_total():
     assert density(np.array([0.1, 0.1, 0.9, 7.0]), edges).tolist() == [2, 0, 0, 1]
 
 
+def test_whole_numbers_keep_all_digits():
+    assert [number(value) for value in (16384.0, 262144.0, 12345.6, 1e7)] == [
+        "16384",
+        "262144",
+        "12346",
+        "1.00e+07",
+    ]
+
+
 def test_numbers_and_ticks():
-    assert [number(value) for value in (0.0, -0.0, 0.12345, 123456.0, 1e-7, np.nan)] == [
+    assert [number(value) for value in (0.0, -0.0, 0.12345, 123456.7, 1e-7, np.nan)] == [
         "0", "0", "0.1235", "1.23e+05", "1.00e-07", "none",
     ]  # fmt: skip
     assert [text for _, text in log_ticks(-2, 0, 0.9)] == ["0.01", "0.1", "1"]

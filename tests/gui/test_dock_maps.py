@@ -62,6 +62,7 @@ def test_counts_have_a_logarithmic_bar(dock, scene, qtbot):
     feed(dock, scene)
     choose(dock, scene, "count")
     assert dock.bar.isVisible()
+    assert dock.unit.text() == "candidates"
     assert [text for _, text in dock.bar.ticks] == ["0", "1", "10", "100", "470"]
     assert dock.bar.ticks[2][0] == pytest.approx(np.log(11) / np.log(471), rel=1e-4)
     hover(qtbot, dock.pane, 47, 3)

@@ -1,4 +1,4 @@
-"""Convergence: how far the statistics are from the exemplar's, iteration by iteration."""
+"""Convergence: how far a run is from the exemplar as it goes on, by iteration or by pixels filled."""
 
 from __future__ import annotations
 
@@ -53,12 +53,27 @@ class Heat:
 
 @dataclass(frozen=True, eq=False)
 class ConvergenceAnswer:
-    """Curves of all columns by name, the chosen column's own, and its heat map."""
+    """Curves of all columns (title, whether it is the chosen column), its own by name, and its heat map."""
 
     overlaid: tuple[tuple[str, bool, Curve], ...]
     own: dict[str, Curve] = field(default_factory=dict)
     chosen: str = MEAN
     heat: Heat | None = None
+
+    @property
+    def shown(self) -> Curve:
+        """The chosen curve of the chosen column."""
+        return self.own[self.chosen]
+
+    @property
+    def alike(self) -> dict[str, Curve]:
+        """The chosen column's curves that have the axes of the chosen one."""
+        return {name: each for name, each in self.own.items() if _axes(each) == _axes(self.shown)}
+
+    @property
+    def references(self) -> list[Curve]:
+        """What the chosen curve is to be held against."""
+        return [each for each in self.alike.values() if each.reference]
 
 
 def heat_of(details: Any) -> Heat | None:
@@ -112,9 +127,9 @@ class ConvergenceDock(FramedDock):
 
     name = "convergence"
     title = "Convergence"
-    help = "How far the statistics are from the exemplar's, iteration by iteration."
+    help = "How far a run is from the exemplar as it goes on: statistics by iteration, windows while growing."
     order = 50
-    empty = "Curves appear while a method that iterates runs."
+    empty = "Curves appear while a method that iterates runs, and when a growth has finished."
 
     def build(self) -> None:
         """Make the controls, the plots and the heat map."""
@@ -182,12 +197,13 @@ class ConvergenceDock(FramedDock):
             self.controls.hide()
             return None
         self.controls.show()
-        replace_items(self.curve, [(each.title, name) for name, each in own.items()])
+        replace_items(self.curve, [(each.title, name) for name, each in own.items() if not each.reference])
         chosen = self.curve.currentData()
+        # Another criterion has another unit: such curves do not belong into one pair of axes.
         overlaid = tuple(
             (column.title, column.id == scene.selected_id, curves[chosen])
             for column, curves in by_column
-            if chosen in curves
+            if chosen in curves and _axes(curves[chosen]) == _axes(own[chosen])
         )
         details = selected.result.details if selected.result is not None else None
 
@@ -221,27 +237,33 @@ class ConvergenceDock(FramedDock):
         self._make_room()
 
     def _make_room(self) -> None:
-        many = self.answer is not None and len(self.answer.own) > 1
+        many = self.answer is not None and len(self.answer.alike) - len(self.answer.references) > 1
         self.all.setVisible(many and (self.width() >= WIDE_ENOUGH or self._heat is None))
 
     def _redraw(self) -> None:
         answer: ConvergenceAnswer | None = self.answer
         if answer is None:
             return
-        log = self.log.isChecked()
+        drawn = [curve for _, _, curve in answer.overlaid] + answer.references
+        floor = _floor(drawn) if self.log.isChecked() else None
         self.plot.clear()
         for (_, here, curve), (role, line) in zip(answer.overlaid, _styles(len(answer.overlaid)), strict=True):
-            self.plot.curve(*_points(curve, log), role, line=line, width=3 if here else 1.5)
-        shown = answer.own[answer.chosen]
-        self.plot.set_log(log)
+            self.plot.curve(*_points(curve, floor), role, line=line, width=3 if here else 1.5)
+        for curve in answer.references:
+            x, y = _points(curve, floor)
+            self.plot.curve(x, y, "text", line="dash", width=1)
+            if x.size:
+                self.plot.text(x[-1], y[-1], curve.title, "muted", anchor=(1, 0))
+        shown = answer.shown
+        self.plot.set_log(floor is not None)
         self.plot.set_labels(shown.x_label, shown.y_label)
         self.plot.fit()
         self.all.clear()
-        for name, curve in answer.own.items():
-            if curve.x_label == shown.x_label and curve.y_label == shown.y_label:
-                thick = name == answer.chosen
-                self.all.curve(*_points(curve, log), "exemplar" if thick else "muted", width=3 if thick else 1)
-        self.all.set_log(log)
+        floor = _floor(list(answer.alike.values())) if self.log.isChecked() else None
+        for name, curve in answer.alike.items():
+            thick = name == answer.chosen
+            self.all.curve(*_points(curve, floor), "exemplar" if thick else "muted", width=3 if thick else 1)
+        self.all.set_log(floor is not None)
         self.all.set_labels(shown.x_label, "")
         self.all.fit()
 
@@ -255,6 +277,7 @@ class ConvergenceDock(FramedDock):
             name = f"<b>{title}</b>" if here else title
             last = number(float(curve.y[-1])) if curve.y.size else ""
             words.append(f"<span style='color:{getattr(self.theme, role)}'>{strokes[line]}</span> {name} {last}")
+        words += [f"{strokes['dash']} {each.title} {number(float(each.y[-1]))}" for each in answer.references]
         self.legend.setText("&nbsp;&nbsp; ".join(words))
 
     def _show_heat(self, *_: object) -> None:
@@ -299,16 +322,25 @@ class ConvergenceDock(FramedDock):
             if curve.x.size:
                 nearest = int(np.argmin(np.abs(curve.x - x)))
                 words.append(f"{title} {number(float(curve.y[nearest]))}")
-        label = answer.own[answer.chosen].x_label
-        self.readout.setText(f"{label} {x:.0f}: " + ", ".join(words))
+        self.readout.setText(f"{answer.shown.x_label} {x:.0f}: " + ", ".join(words))
 
 
 def _styles(count: int) -> list[tuple[Any, Any]]:
     return [SERIES[index % len(SERIES)] for index in range(count)]
 
 
-def _points(curve: Curve, log: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the points that can be drawn: with a logarithmic axis, only those above zero."""
-    usable = np.isfinite(curve.y) & (curve.y > 0) if log else np.isfinite(curve.y)
-    y = np.log10(curve.y[usable]) if log else curve.y[usable]
-    return curve.x[usable], y
+def _axes(curve: Curve) -> tuple[str, str]:
+    return curve.x_label, curve.y_label
+
+
+def _floor(curves: list[Curve]) -> float | None:
+    """Return where zeros lie in a logarithmic plot: below all else; None when there is nothing above zero."""
+    positive = [curve.y[np.isfinite(curve.y) & (curve.y > 0)] for curve in curves]
+    return min((float(each.min()) for each in positive if each.size), default=0.0) / 2 or None
+
+
+def _points(curve: Curve, floor: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the points that can be drawn; with a floor, the logarithms of their values, none below the floor."""
+    usable = np.isfinite(curve.y)
+    y = curve.y[usable]
+    return curve.x[usable], y if floor is None else np.log10(np.maximum(y, floor))

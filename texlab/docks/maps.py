@@ -110,9 +110,17 @@ class MapsDock(FramedDock):
         key_label = QLabel("Place in the exemplar")
         key_label.setProperty("role", "muted")
         key_layout.addWidget(key_label)
-        for page in (key_page, self.bar, self.regions):
+        bar_page = QWidget()
+        bar_layout = QVBoxLayout(bar_page)
+        bar_layout.setContentsMargins(0, 0, 0, 0)
+        bar_layout.addWidget(self.bar, 1)
+        self.unit = QLabel()
+        self.unit.setObjectName("maps-unit")
+        self.unit.setProperty("role", "muted")
+        bar_layout.addWidget(self.unit)
+        for page in (key_page, bar_page, self.regions):
             self.legend.addWidget(page)
-        self._key_page = key_page
+        self._key_page, self._bar_page = key_page, bar_page
         layout = QHBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self.pane, 3)
@@ -159,7 +167,8 @@ class MapsDock(FramedDock):
         elif answer.scale is not None:
             ticks = [(place, number(value)) for place, value in answer.scale.ticks()]
             self.bar.show_scale(colouring.map_table(answer.shown), ticks)
-            self.legend.setCurrentWidget(self.bar)
+            self.unit.setText(answer.shown.unit)
+            self.legend.setCurrentWidget(self._bar_page)
         else:
             self._list_regions(answer)
             self.legend.setCurrentWidget(self.regions)

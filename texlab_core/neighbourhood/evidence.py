@@ -134,7 +134,12 @@ def _curves(tally: _Tally, levels: NDArray[np.float32], unit: str) -> dict[str, 
     if levels.size:
         level = np.full(2, levels.mean(dtype=np.float64))
         curves["leave-one-out"] = Curve.of(
-            level, "The exemplar with itself", x=[0, tally.last], x_label=label, y_label=unit
+            level,
+            "The exemplar's own windows",
+            x=[0, tally.last],
+            x_label=label,
+            y_label=unit,
+            reference=True,
         )
     return curves
 
