@@ -42,10 +42,12 @@ def register_editor(value_type: type, editor: Editor) -> None:
 class KnobWidget(QWidget):
     """Edits one value.
 
-    ``edited(value, final)``: ``final`` is False while a drag goes on.
+    ``edited(value, final)``: ``final`` is False while a drag goes on. ``dock_wanted(name)``: there is more to edit
+    in a dock.
     """
 
     edited = Signal(object, bool)
+    dock_wanted = Signal(str)
 
     def set_value(self, value: Any) -> None:
         """Show a value without emitting anything."""
@@ -256,6 +258,7 @@ class ParameterForm(QWidget):
 
     edited = Signal(object, str, bool)
     refused = Signal(str)
+    dock_wanted = Signal(str)
 
     def __init__(self, params_class: type[Params], parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -369,6 +372,7 @@ class ParameterForm(QWidget):
         self._labels[field.name] = label
         self._resets[field.name] = reset
         knob.edited.connect(lambda value, final: self._edit(field.name, value, final))
+        knob.dock_wanted.connect(self.dock_wanted)
 
     def _edit(self, name: str, value: Any, final: bool) -> None:
         try:

@@ -289,6 +289,14 @@ class MainWindow(QMainWindow):
         self.resizeDocks([parameters], [width], Qt.Orientation.Horizontal)
         self.settings.values["layout"] = layout
 
+    def raise_dock(self, name: str) -> None:
+        """Bring a dock to the front and give it the keyboard."""
+        dock = self.docks.get(name)
+        if dock is not None:
+            dock.show()
+            dock.raise_()
+            dock.widget().setFocus()
+
     def _base_points(self) -> float:
         value = self.settings.values.setdefault("points", QApplication.font().pointSizeF())
         return float(value) if isinstance(value, int | float) and 4 <= value <= 40 else 10.0

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 class ParametersView(QWidget):
     """Shows the form of the chosen column's method.
 
-    ``edited(column_id, params, name, final)``; ``reset_wanted(column_id)``; ``help_wanted(method)``.
+    ``edited(column_id, params, name, final)``; ``reset_wanted(column_id)``; ``help_wanted(method)``;
+    ``dock_wanted(name)``.
     """
 
     edited = Signal(int, object, str, bool)
     reset_wanted = Signal(int)
     help_wanted = Signal(str)
+    dock_wanted = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -96,4 +98,5 @@ class ParametersView(QWidget):
         self.form = form
         if form is not None:
             self.scroll_area.setWidget(form)
+            form.dock_wanted.connect(self.dock_wanted)
             form.edited.connect(lambda params, name, final: self.edited.emit(self._column_id, params, name, final))
