@@ -5,7 +5,7 @@ BIN := .venv/bin
 PY := $(BIN)/python
 SCREEN := -o xvfb_width=1920 -o xvfb_height=1200 -o xvfb_colordepth=24
 
-.PHONY: run test lint fmt bench wheel clean distclean
+.PHONY: run test lint fmt bench wheel screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -35,6 +35,11 @@ bench: .venv/.ready-bench
 wheel: .venv/.ready-run
 	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist
 	@ls dist/*.whl
+
+# The picture in the README.
+screenshot: .venv/.ready-run
+	@mkdir -p docs
+	@$(BIN)/texlab screenshot --out docs/window.png --gallery structured-pebbles
 
 .venv/.ready-%: pyproject.toml tools/setup_env.py
 	@$(PYTHON) tools/setup_env.py $*

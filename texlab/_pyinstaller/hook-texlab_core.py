@@ -8,7 +8,8 @@ from PyInstaller.utils.hooks import collect_data_files, collect_submodules
 
 import texlab_core
 
-hiddenimports = collect_submodules("texlab_core")
+# imagecodecs loads its codecs by name.
+hiddenimports = [*collect_submodules("texlab_core"), *collect_submodules("imagecodecs")]
 datas = collect_data_files("texlab_resources")
 if not datas:  # a checkout, where the package texlab_resources is the folder resources
     datas = [(str(Path(texlab_core.__file__).resolve().parent.parent / "resources"), "texlab_resources")]
