@@ -20,7 +20,7 @@ from texlab.docks import dock_classes
 from texlab.editors import register_editors
 from texlab.jobs import Slots, Task, Worker
 from texlab.memory import memory_text
-from texlab.opening import IMAGE_SUFFIXES, Opener
+from texlab.opening import IMAGE_SUFFIXES, Opener, is_document
 from texlab.overlays import Overlays
 from texlab.pictures import describe_pixel, to_picture
 from texlab.preset_manager import PresetManager
@@ -38,6 +38,8 @@ from texlab_core.run import MAX_SEED, versions
 from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from texlab.docks.base import Dock
     from texlab.scene import Mark, Picture, Scene
     from texlab.settings import Settings
@@ -65,7 +67,7 @@ class Explorer(QObject):
         self.themes = themes
         self.session = Session(self)
         self.controller = Controller(self.session, themes, self)
-        self.opener = Opener(self.session, self.controller, settings)
+        self.opener = Opener(self.session, self.controller, settings, lambda path: self.presets.import_file(path))
         self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
         self.crash = CrashHandler(self)
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
@@ -92,12 +94,12 @@ class Explorer(QObject):
 
     # Start.
 
-    def start(self, source: str | None, *, columns: list[tuple[str, Any]] | None = None) -> None:
+    def start(self, source: str | None, *, columns: Sequence[tuple[Any, ...]] | None = None) -> None:
         """Fill the window: the given image, or the last session, or the first texture."""
         saved = self.settings.values.get("session")
         chosen = columns or columns_from_json(saved) or first_columns()
         seed, size = seed_and_size(saved)
-        made = tuple(Column(place + 1, method, params) for place, (method, params) in enumerate(chosen))
+        made = tuple(Column(place + 1, *each) for place, each in enumerate(chosen))
         self.session.apply(State(None, made, seed, size, len(made) + 1), "start")
         place = saved.get("selected", 0) if isinstance(saved, dict) else 0
         place = place if isinstance(place, int) and 0 <= place < len(made) else 0
@@ -113,7 +115,10 @@ class Explorer(QObject):
             self._warming.submit(lambda task: warm_up(task.should_stop))
 
     def _open_first(self, source: str | None, saved: Any) -> None:
-        if source is not None:
+        if source is not None and is_document(source):
+            # A code or a preset goes into a column; the exemplar is the last one.
+            self.opener.open(source)
+        elif source is not None:
             fresh = source.startswith("gallery:")
             self.opener.open(source, crop=FIRST_CROP if fresh else None, scale=1.0 if fresh else None)
             return
@@ -316,9 +321,10 @@ class Explorer(QObject):
         self._select(self.session.add_column(method, methods()[method].params()))
 
     def ask_open(self) -> None:
-        """Ask for an image."""
+        """Ask for an image, a code or a preset."""
         pattern = " ".join(f"*{suffix}" for suffix in IMAGE_SUFFIXES)
-        path, _ = QFileDialog.getOpenFileName(self.window, "Open image", "", f"Images ({pattern});;All files (*)")
+        kinds = f"Images ({pattern});;MSG codes and presets (*.json);;All files (*)"
+        path, _ = QFileDialog.getOpenFileName(self.window, "Open image", "", kinds)
         if path:
             self.opener.open(path)
 

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab.session import Column, Sample, Session, State
-from texlab_core.inputs import Crop, ImageInput
+from texlab_core.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.controller import Controller
     from texlab.jobs import Task
     from texlab.settings import Settings
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from texlab_core.steps import Result
 
 COMFORTABLE_SIDE = 256
+DOCUMENT_SUFFIX = ".json"
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
 
 
@@ -29,6 +32,42 @@ class Opened:
     image: ImageInput
     path: str | None
     job: Job | None = None
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a JSON file turned out to be: a code, or else a preset."""
+
+    path: str
+    code: DataInput | None = None
+
+
+def is_document(source: str | bytes) -> bool:
+    """Return whether a source is a file that goes into a column instead of being the exemplar."""
+    return isinstance(source, str) and source.lower().endswith(DOCUMENT_SUFFIX)
+
+
+def open_document(path: str) -> Document:
+    """Read a code or recognize a preset by its ``format``; runs in a thread.
+
+    Raises
+    ------
+    InputError
+        One sentence when it is neither, or not what it says it is.
+    """
+    from texlab_core import presets, strict_json
+    from texlab_core.errors import InputError
+    from texlab_core.spectral import codefile
+
+    file = Path(path)
+    data = strict_json.load(file, what=f"the file {file.name}")
+    kind = data.get("format") if isinstance(data, dict) else None
+    if kind == codefile.FORMAT:
+        code = codefile.code_from_json(data, what=f"the code {file.name}").code
+        return Document(path, codefile.code_input(code, file.name))
+    if kind != presets.FORMAT:
+        raise InputError(f"{file.name} is neither a code of MSG nor a preset.")
+    return Document(path)
 
 
 def open_source(source: str | bytes) -> Opened:
@@ -90,17 +129,42 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
 
 
-class Opener:
-    """Opens and saves through the controller's background workers."""
+def with_code(state: State, code: DataInput, chosen: int) -> tuple[State, int]:
+    """Return the state in which MSG works from a code, and the id of its column.
 
-    def __init__(self, session: Session, controller: Controller, settings: Settings) -> None:
+    The chosen column takes it, or the first one of MSG; without one, a column is added.
+    """
+    from texlab_core.registry import find_method
+
+    inputs = (("code", code),)
+    for column in sorted(state.columns, key=lambda column: column.id != chosen):
+        if column.method == "msg":
+            return state.with_column(dataclasses.replace(column, inputs=inputs)), column.id
+    added = Column(state.next_id, "msg", find_method("msg").params(), inputs)
+    return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
+
+
+class Opener:
+    """Opens and saves through the controller's background workers; presets go to ``import_preset(path)``."""
+
+    def __init__(
+        self,
+        session: Session,
+        controller: Controller,
+        settings: Settings,
+        import_preset: Callable[[str], None],
+    ) -> None:
         self._session = session
         self._controller = controller
         self._settings = settings
+        self._import_preset = import_preset
         self._newest = 0
 
     def open(self, source: str | bytes, *, crop: Crop | None = None, scale: float | None = None) -> None:
-        """Open a path, gallery:NAME or the bytes of a file; the newest of several wins."""
+        """Open a path, gallery:NAME or the bytes of a file; the newest of several images wins."""
+        if isinstance(source, str) and is_document(source):
+            self._open_document(source)
+            return
         self._newest += 1
         number = self._newest
 
@@ -112,6 +176,21 @@ class Opener:
                 self._take(opened, crop, scale)
 
         self._controller.once("open", work, done)
+
+    def _open_document(self, path: str) -> None:
+        def work(task: Task) -> Document:
+            return open_document(path)
+
+        self._controller.once("open-document", work, self._take_document)
+
+    def _take_document(self, document: Document) -> None:
+        if document.code is None:
+            self._import_preset(document.path)
+            return
+        state, column_id = with_code(self._session.state, document.code, self._session.selected_id)
+        self._session.apply(state, f"code {document.code.name}")
+        self._session.select(column_id)
+        self._controller.said.emit(f"MSG works from the code {document.code.name}, not from the exemplar.")
 
     def _take(self, opened: Opened, crop: Crop | None, scale: float | None) -> None:
         if opened.job is not None:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from texlab.paths import config_dir
 from texlab_core.errors import InputError
 from texlab_core.files import write_whole
+from texlab_core.inputs import DataInput
 from texlab_core.registry import methods
 from texlab_core.run import check_seed, check_size
 
 if TYPE_CHECKING:
-    from texlab.session import State
+    from texlab.session import Column, State
+    from texlab_core.registry import Method
 
 log = logging.getLogger(__name__)
 
@@ -75,22 +77,39 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
     places = [column.id for column in state.columns]
     return {
         "sample": sample,
-        "columns": [{"method": column.method, "params": column.params.to_json()} for column in state.columns],
+        "columns": [column_to_json(column) for column in state.columns],
         "seed": state.seed,
         "size": list(state.size),
         "selected": places.index(selected) if selected in places else 0,
     }
 
 
-def columns_from_json(data: Any) -> list[tuple[str, Any]]:
-    """Return the (method, parameters) of a saved session; what does not fit any more is left out."""
+def column_to_json(column: Column) -> dict[str, Any]:
+    """Return a column as JSON; of its further inputs, those that are small documents (a code)."""
+    saved: dict[str, Any] = {"method": column.method, "params": column.params.to_json()}
+    documents = {name: each for name, each in column.inputs if isinstance(each, DataInput)}
+    if documents:
+        saved["inputs"] = {name: {"name": each.name, "data": each.data} for name, each in documents.items()}
+    return saved
+
+
+def _inputs_from_json(saved: Any, method: Method) -> tuple[tuple[str, DataInput], ...]:
+    known = {spec.name for spec in method.inputs if spec.kind == "data"}
+    return tuple(
+        (name, DataInput(each["data"], str(each["name"]))) for name, each in saved.items() if name in known
+    )
+
+
+def columns_from_json(data: Any) -> list[tuple[str, Any, tuple[tuple[str, DataInput], ...]]]:
+    """Return (method, parameters, inputs) of a saved session; what does not fit any more is left out."""
     found = []
     listed = data.get("columns") if isinstance(data, dict) else None
     for each in (listed if isinstance(listed, list) else [])[:MAX_COLUMNS]:
         try:
             method = methods()[each["method"]]
-            found.append((method.id, method.params.from_json(each["params"])))
-        except (InputError, KeyError, TypeError) as error:
+            inputs = _inputs_from_json(each.get("inputs", {}), method)
+            found.append((method.id, method.params.from_json(each["params"]), inputs))
+        except (InputError, AttributeError, KeyError, TypeError, ValueError) as error:
             log.warning("A column of the last session was left out: %s", error)
     return found
 

@@ -239,6 +239,8 @@ def status_line(scene: ColumnScene) -> str:
     if scene.status == "finished" and scene.result is not None:
         height, width = scene.result.image.shape[:2]
         parts.append(f"{width} x {height}, {format_seconds(scene.elapsed_s)}")
+        if any(name == "code" for name, _ in scene.inputs):
+            parts.append("from a code, not the exemplar")
         numbers = {**scene.result.measures, **scene.metrics}
         parts += [format_measure(name, numbers[name]) for name in _MEASURES if name in numbers][:MOST_NUMBERS]
     return " · ".join(parts)
