@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PyInstaller.utils.hooks import collect_data_files, collect_submodules
+from PyInstaller.utils.hooks import collect_data_files, collect_submodules, copy_metadata
 
 import texlab_core
 
@@ -13,3 +13,6 @@ hiddenimports = [*collect_submodules("texlab_core"), *collect_submodules("imagec
 datas = collect_data_files("texlab_resources")
 if not datas:  # a checkout, where the package texlab_resources is the folder resources
     datas = [(str(Path(texlab_core.__file__).resolve().parent.parent / "resources"), "texlab_resources")]
+# Recipes name the versions of the libraries.
+for library in ("numpy", "scipy", "numba", "opencv-contrib-python-headless"):
+    datas += copy_metadata(library)
