@@ -19,6 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
 EXTRAS = {"run": "", "test": "[test]", "bench": "[test,bench]"}
+INCLUDED = {"run": ("run",), "test": ("run", "test"), "bench": ("run", "test", "bench")}
 
 # Shared libraries that Qt loads, and the Debian packages that hold them.
 QT_LIBRARIES = {
@@ -64,7 +65,8 @@ def main(goal: str) -> int:
     done = subprocess.run([*pip, *quiet, "--editable", f".{EXTRAS[goal]}"], cwd=ROOT, check=False)
     if done.returncode:
         return refuse("pip could not install TexLab; its message is above.")
-    (VENV / f".ready-{goal}").touch()
+    for each in INCLUDED[goal]:
+        (VENV / f".ready-{each}").touch()
     return 0
 
 
