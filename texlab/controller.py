@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from texlab.column_run import ColumnRun, Drafted, DraftRun, Finished, Progress, with_exemplar
-from texlab.jobs import Request, Slots, Task, Worker
+from texlab.jobs import Request, Slots, Worker
 from texlab.pictures import to_picture
 from texlab.resolve import difference, draft_size
 from texlab.scene import ColumnScene, Mark, Picture, Probe, Scene
@@ -81,8 +81,11 @@ class Controller(QObject):
         self._runtimes: dict[int, _Runtime] = {}
         self._prepared: Prepared | None = None
         self._dragging = False
+        self._cropping = False
+        self._preparing = False
         self._probe: Probe | None = None
         self._once_workers: set[Worker] = set()
+        self._leaving: list[Worker] = []
         self._exemplar_worker = Worker("exemplar", parent=self)
         self._exemplar_worker.finished.connect(self._exemplar_prepared)
         self._exemplar_worker.failed.connect(self._exemplar_failed)
@@ -151,7 +154,9 @@ class Controller(QObject):
         if sample is not None:
             with self._drag(not final):
                 self.session.set_sample(dataclasses.replace(sample, crop=crop), merge="crop")
-            self._settle(final, tuple(self._runtimes))
+            self._cropping = not final
+            # An exemplar that is still being prepared starts the columns at full size when it comes.
+            self._settle(final, () if self._preparing else tuple(self._runtimes))
 
     def edit_scale(self, scale: float) -> None:
         """Scale the source; the crop is scaled along."""
@@ -254,19 +259,22 @@ class Controller(QObject):
         """Stop and join every thread."""
         self._refresh.stop()
         workers = [runtime.worker for runtime in self._runtimes.values()]
-        for worker in [*workers, self._exemplar_worker, *self._once_workers]:
+        workers += [*self._leaving, self._exemplar_worker, *self._once_workers]
+        # All are asked first, so that they end side by side.
+        for worker in workers:
+            worker.leave()
+        for worker in workers:
             worker.close()
         self._runtimes.clear()
         self._once_workers.clear()
+        self._leaving.clear()
 
     # The session has changed.
 
     def _session_changed(self, before: State, after: State) -> None:
         changes = difference(before, after)
         for column_id in changes.removed:
-            runtime = self._runtimes.pop(column_id)
-            runtime.worker.close()
-            runtime.worker.deleteLater()
+            self._let_go(self._runtimes.pop(column_id).worker)
         for column_id in changes.added:
             self._add_runtime(column_id)
         if changes.sample:
@@ -275,6 +283,14 @@ class Controller(QObject):
             for column_id in changes.run:
                 self._start(column_id, draft=self._dragging)
         self._refresh.start()
+
+    def _let_go(self, worker: Worker) -> None:
+        """End a worker without waiting: the window must not stand still while its column comes to a stop."""
+        worker.leave()
+        for ended in [each for each in self._leaving if each.ended]:
+            self._leaving.remove(ended)
+            ended.deleteLater()
+        self._leaving.append(worker)
 
     def _add_runtime(self, column_id: int) -> None:
         column = self._column(column_id)
@@ -295,35 +311,39 @@ class Controller(QObject):
         return column
 
     def _prepare(self, sample: Sample | None) -> None:
+        self._cropping = self._dragging
         for column_id, runtime in self._runtimes.items():
-            runtime.worker.cancel()
-            self._set(column_id, status="idle" if sample is None else "waiting", message="", result=None)
+            # While the box is dragged, the drafts on their way are still worth seeing.
+            if not self._cropping:
+                runtime.worker.cancel()
+                self._set(column_id, status="idle" if sample is None else "waiting", message="", result=None)
         if sample is None:
             self._prepared = None
             return
-        draft = self._dragging
         before = self._prepared
+        self._preparing = True
+        self._exemplar_worker.submit(lambda task: prepare(sample, before), patient=self._cropping)
 
-        def work(task: Task) -> tuple[Prepared, bool]:
-            return prepare(sample, before), draft
-
-        self._exemplar_worker.submit(work)
-
-    def _exemplar_prepared(self, value: tuple[Prepared, bool]) -> None:
-        self._prepared, draft = value
-        self.exemplar_ready.emit(self._prepared)
-        for column in self.session.state.columns:
-            self._start(column.id, draft=draft)
+    def _exemplar_prepared(self, prepared: Prepared) -> None:
+        self._prepared = prepared
+        self._preparing = self._exemplar_worker.behind
+        self.exemplar_ready.emit(prepared)
+        if self._cropping or not self._preparing:
+            for column in self.session.state.columns:
+                self._start(column.id, draft=self._cropping)
         self._refresh.start()
 
     def _exemplar_failed(self, sentence: str) -> None:
+        self._preparing = False
+        # Nothing may run on the exemplar from before.
+        self._prepared = None
         self.problem.emit(sentence)
         for column_id in self._runtimes:
             self._set(column_id, status="failed", message=sentence, result=None, draft=False)
 
     def _start(self, column_id: int, *, draft: bool, state: Callable[[], Mapping[str, Any]] | None = None) -> None:
         runtime = self._runtimes.get(column_id)
-        if runtime is None or self._prepared is None:
+        if runtime is None or self._prepared is None or (self._preparing and not draft):
             return
         column = self._column(column_id)
         session = self.session.state

@@ -167,8 +167,8 @@ class Worker(QObject):
         if running:
             self.cancelled.emit()
 
-    def close(self, timeout_s: float = 5.0) -> None:
-        """Stop the thread and wait for its end."""
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting; nothing is delivered any more."""
         with self._mail:
             self._closing = True
             self._request = None
@@ -177,6 +177,15 @@ class Worker(QObject):
             self._mail.notify()
         if self._slots is not None:
             self._slots.wake()
+
+    @property
+    def ended(self) -> bool:
+        """Whether the thread has ended."""
+        return not self._thread.is_alive()
+
+    def close(self, timeout_s: float = 5.0) -> None:
+        """Stop the thread and wait for its end."""
+        self.leave()
         self._thread.join(timeout_s)
         if self._thread.is_alive():
             log.error("%s did not end within %.0f s.", self._thread.name, timeout_s)
