@@ -246,7 +246,7 @@ def status_line(scene: ColumnScene) -> str:
     return " · ".join(parts)
 
 
-MOST_NUMBERS = 4
+MOST_NUMBERS = 3
 # In the order in which they are shown, as far as a result has them.
 _MEASURES = {
     "parameters": ("numbers", "{:.0f}"),
