@@ -81,7 +81,8 @@ class ViewLink:
             pane.show_rect(QRectF(centre - QPointF(size.width() / 2, size.height() / 2), size))
 
 
-_MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
+SMALLEST_MARK = 5.0
+MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
 
 
 class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
@@ -96,7 +97,7 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
     def show_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float]) -> None:
         """Outline these places."""
         self.prepareGeometryChange()
-        self._lines = {role: [] for role in _MARK_COLOURS}
+        self._lines = {role: [] for role in MARK_COLOURS}
         self._bounds = QRectF()
         for mark in marks:
             place = QRectF(mark.left + offset[1], mark.top + offset[0], mark.width, mark.height)
@@ -106,17 +107,25 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
 
     def boundingRect(self) -> QRectF:
         """Return what the outlines cover."""
-        return self._bounds.adjusted(-1, -1, 1, 1)
+        # Marks of single pixels are painted larger when the picture is small.
+        return self._bounds.adjusted(-8, -8, 8, 8)
 
     def paint(self, painter: QPainter, *_: object) -> None:
-        """Paint a dark line under a bright one: seen on any picture."""
+        """Paint a dark line under a bright one: seen on any picture, and never smaller than a few pixels."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for role, colour in _MARK_COLOURS.items():
-            places = self._lines.get(role, [])
+        least = SMALLEST_MARK / max(abs(painter.worldTransform().m11()), 1e-6)
+        for role, colour in MARK_COLOURS.items():
+            places = [_enlarged(place, least) for place in self._lines.get(role, [])]
             if places:
                 for pen_colour, width in (("#000000", 3), (colour, 2 if role == "chosen" else 1)):
                     painter.setPen(pg.mkPen(pen_colour, width=width))
                     painter.drawRects(places)
+
+
+def _enlarged(place: QRectF, least: float) -> QRectF:
+    """Return a rectangle with the same centre whose sides are not shorter than ``least``."""
+    grow = max(least - place.width(), 0.0) / 2, max(least - place.height(), 0.0) / 2
+    return place.adjusted(-grow[0], -grow[1], *grow)
 
 
 class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QSplitter, QWidget
 
+from texlab.scene import Mark
 from texlab.views.column import ColumnView
 from texlab.views.exemplar import ExemplarView
 from texlab.views.image_pane import ViewLink
@@ -72,6 +73,7 @@ class Workspace(QScrollArea):
             view = self.columns[column.id]
             view.show_scene(column)
             view.set_chosen(column.id == scene.selected_id)
+            view.pane.set_marks(pinned_pixel(scene, column.id))
 
     def _add(self, column_id: int) -> None:
         view = ColumnView(column_id, self._methods, self.link)
@@ -100,3 +102,11 @@ class Workspace(QScrollArea):
         if view is not None:
             at = view.mapTo(self._inner, QPoint(view.width() // 2, 0))
             self.ensureVisible(at.x(), at.y(), view.width() // 2 + 8, 0)
+
+
+def pinned_pixel(scene: Scene, column_id: int) -> tuple[Mark, ...]:
+    """Return the mark of the pixel that is kept in a column, if there is one."""
+    probe = scene.probe
+    if probe is None or not probe.pinned or probe.column_id != column_id:
+        return ()
+    return (Mark(probe.row, probe.column, 1, 1, "chosen"),)

@@ -120,6 +120,15 @@ class Explanation:
         rows = [levels[m].features[place >> 2 * (m - level)] for m in self._constraining(level)]
         return np.array(rows, np.float32).reshape(len(rows), len(self.features))
 
+    def candidate_structures(self, level: int, candidates: NDArray[np.intp]) -> NDArray[np.float32]:
+        """Return the same for several candidates, given by their indices: (n, N - level, J) float32."""
+        grid, levels = self._sampling.analysis.grid, self._sampling.analysis.levels
+        row_part, column_part = grid.parts(level)
+        rows, columns = self.at(level).candidates[candidates].T
+        places = row_part[rows] + column_part[columns]
+        found = [levels[m].features[places >> 2 * (m - level)] for m in self._constraining(level)]
+        return np.array(found, np.float32).reshape(len(found), places.size, len(self.features)).swapaxes(0, 1)
+
     def differences(self, level: int, candidate: int) -> NDArray[np.float32]:
         """Return D of eq. 10 between a candidate's parent structure and the pixel's, (N - level, J) float32."""
         difference = self.candidate_structure(level, candidate) - self.parent_structure(level)
