@@ -38,6 +38,10 @@ class DockHost(QObject):
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.timeout.connect(self._update)
+        self._look = QTimer(self)
+        self._look.setSingleShot(True)
+        self._look.setInterval(0)
+        self._look.timeout.connect(self._update)
         dock.installEventFilter(self)
         dock.asks.connect(self._update)
 
@@ -49,6 +53,7 @@ class DockHost(QObject):
     def close(self) -> None:
         """Stop and join the thread, and what the dock started itself."""
         self._rest.stop()
+        self._look.stop()
         self.dock.shut_down()
         if self._worker is not None:
             self._worker.close()
@@ -56,16 +61,26 @@ class DockHost(QObject):
     @property
     def busy(self) -> bool:
         """Whether an answer is under way, or a newer scene waits to be asked about."""
-        return self._computing or (self._rest.isActive() and self.dock.isVisible())
+        return self._computing or ((self._rest.isActive() or self._look.isActive()) and self.seen)
+
+    @property
+    def seen(self) -> bool:
+        """Whether any part of the dock can be seen: Qt calls the tabs behind the front one visible, too."""
+        return self.dock.isVisible() and not self.dock.visibleRegion().isEmpty()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Catch up when the dock becomes visible."""
-        if event.type() == QEvent.Type.Show:
-            self._update()
+        """Catch up when the dock comes into sight: shown, or its frame brought to the front."""
+        if event.type() == QEvent.Type.ParentChange and watched is self.dock:
+            frame = self.dock.parentWidget()
+            if frame is not None:
+                frame.installEventFilter(self)
+        elif event.type() in (QEvent.Type.Show, QEvent.Type.Move, QEvent.Type.Resize):
+            # The frame has its new place when the event has been handled.
+            self._look.start()
         return super().eventFilter(watched, event)
 
     def _update(self) -> None:
-        if self._scene is None or not self.dock.isVisible():
+        if self._scene is None or not self.seen:
             return
         if self._computing:
             self._dirty = True
