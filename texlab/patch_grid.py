@@ -33,7 +33,10 @@ class Patch:
 
 
 class PatchGrid(QWidget):
-    """Shows patches in rows, as large as they fit; ``chosen`` and ``hovered`` tell an index, -1 for none."""
+    """Shows a large patch and others in rows beside it, as large as they fit.
+
+    ``chosen(index)`` and ``hovered(index)`` tell a patch, -1 for none.
+    """
 
     chosen = Signal(int)
     hovered = Signal(int)
@@ -81,10 +84,15 @@ class PatchGrid(QWidget):
         return QSize(480, 190)
 
     def patch_rect(self, index: int) -> QRectF:
-        """Return where a picture is painted."""
+        """Return where a picture is painted: the first one as high as all rows of the others."""
         across, side = self._arrangement()
-        row, column = divmod(index, across)
-        return QRectF(GAP + column * (side + GAP), GAP + row * (side + GAP + self._words()), side, side)
+        rows = -(-(len(self._patches) - 1) // across)
+        large = max(rows, 1) * (side + GAP + self._words()) - GAP - self._words()
+        if index == 0:
+            return QRectF(GAP, GAP, large, large)
+        row, column = divmod(index - 1, across)
+        left = 3 * GAP + large + column * (side + GAP)
+        return QRectF(left, GAP + row * (side + GAP + self._words()), side, side)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint pictures, frames and captions."""
@@ -135,20 +143,20 @@ class PatchGrid(QWidget):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move with the arrow keys."""
-        across, last = self._arrangement()[0], len(self._patches) - 1
-        steps = {
-            Qt.Key.Key_Left: -1,
-            Qt.Key.Key_Right: 1,
-            Qt.Key.Key_Up: -across,
-            Qt.Key.Key_Down: across,
-            Qt.Key.Key_Home: -last,
+        across, last, here = self._arrangement()[0], len(self._patches) - 1, max(self._selected, 0)
+        wanted = {
+            Qt.Key.Key_Left: here - 1,
+            Qt.Key.Key_Right: here + 1,
+            # The large patch stands beside all rows.
+            Qt.Key.Key_Up: here - across if here > across else here,
+            Qt.Key.Key_Down: here + across if 0 < here <= last - across else here,
+            Qt.Key.Key_Home: 0,
             Qt.Key.Key_End: last,
-        }
-        step = steps.get(Qt.Key(event.key()))
-        if step is None or last < 0:
+        }.get(Qt.Key(event.key()))
+        if wanted is None or last < 0:
             super().keyPressEvent(event)
         else:
-            self._choose(min(max(max(self._selected, 0) + (step if self._selected >= 0 else 0), 0), last))
+            self._choose(min(max(wanted, 0), last))
 
     def _choose(self, index: int) -> None:
         self.select(index)
@@ -163,13 +171,14 @@ class PatchGrid(QWidget):
         return self.fontMetrics().height() + 4.0
 
     def _arrangement(self) -> tuple[int, float]:
-        """Return how many patches stand side by side, and the side at which all of them fit."""
-        count = max(1, len(self._patches))
+        """Return how many of the small patches stand side by side, and the side at which all of them fit."""
+        count = max(1, len(self._patches) - 1)
 
         def side(across: int) -> float:
             rows = -(-count // across)
-            wide = (self.width() - GAP) / across - GAP
-            high = (self.height() - GAP) / rows - GAP - self._words()
+            below = GAP + self._words()
+            wide = (self.width() - (across + 4) * GAP - (rows - 1) * below) / (rows + across)
+            high = (self.height() - GAP) / rows - below
             return max(6.0, min(wide, high))
 
         across = max(range(1, count + 1), key=lambda number: (round(side(number), 3), -number))

@@ -105,10 +105,25 @@ def test_patches_are_painted_and_lie_apart(grid):
             assert not areas[first].intersects(areas[second])
 
 
-def test_patches_use_the_room(grid):
-    small = grid.patch_rect(0).width()
+def test_patches_use_the_room_and_the_first_is_as_high_as_all_rows(grid):
+    small = grid.patch_rect(1).width()
     grid.resize(900, 300)
-    assert grid.patch_rect(0).width() > 1.5 * small
+    assert grid.patch_rect(1).width() > 1.5 * small
+    first, others = grid.patch_rect(0), [grid.patch_rect(index) for index in range(1, 7)]
+    assert first.bottom() == pytest.approx(max(area.bottom() for area in others))
+    assert first.width() >= others[0].width()
+
+
+def test_arrow_keys_go_through_the_rows(grid, qtbot):
+    grid.resize(560, 300)
+    across = sum(grid.patch_rect(index).top() == grid.patch_rect(1).top() for index in range(1, 7))
+    assert 1 < across < 6
+    grid.select(1)
+    seen = []
+    grid.chosen.connect(seen.append)
+    for key in (Qt.Key.Key_Down, Qt.Key.Key_Up, Qt.Key.Key_Up, Qt.Key.Key_Left, Qt.Key.Key_Down):
+        qtbot.keyClick(grid, key)
+    assert seen == [1 + across, 1, 1, 0, 0]
 
 
 def test_patches_by_mouse_and_keys(grid, qtbot):
