@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-import scipy.fft
+import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
 from texlab_core.threads import workers

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-import scipy.fft
+import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
 from texlab_core.spectral.bank import (
