@@ -34,8 +34,8 @@ class ExplainDock(FramedDock):
         "The candidates that it was chosen from are outlined in the exemplar too. For De Bonet: its ancestors "
         "from the coarsest level to the finest with their candidates, and the parent structures that were "
         "compared, with the thresholds as limits; arrows left and right change the level, up and down the "
-        "candidate. For Efros-Leung: the window, its best matches, and the one that was copied. For Heeger-Bergen: "
-        "what every subband adds to the pixel."
+        "candidate. For Efros-Leung: the window, its best matches, and the one that was copied. For "
+        "Heeger-Bergen: what every subband adds to the pixel."
     )
     order = 22
     rest_ms = 0
