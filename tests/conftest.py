@@ -98,6 +98,7 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
         yield
         return
     from PySide6.QtCore import QEvent, QObject, Qt
+    from PySide6.QtGui import QCursor
     from PySide6.QtWidgets import QWidget
 
     app = request.getfixturevalue("qapp")
@@ -111,6 +112,8 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
                 app.processEvents()
             return False
 
+    # The server tells of a move only when there is one: every test starts with the pointer out of the way.
+    QCursor.setPos(app.primaryScreen().geometry().bottomRight())
     manager = Manager()
     app.installEventFilter(manager)
     monkeypatch.setattr("pytestqt.qtbot.QtBot.mouseMove", staticmethod(_move_mouse))
@@ -119,12 +122,9 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def _move_mouse(widget: QWidget, pos: QPoint, delay: int = -1) -> None:
-    """Move the pointer and wait for the server, which tells of a move only when there is one."""
-    from PySide6.QtGui import QCursor, QGuiApplication
+    """Move the pointer and wait until the server, which answers later, has told of it."""
     from PySide6.QtTest import QTest
 
-    QCursor.setPos(QGuiApplication.primaryScreen().geometry().bottomRight())
-    QTest.qWait(20)
     QTest.mouseMove(widget, pos, delay)
     QTest.qWait(50)
 
