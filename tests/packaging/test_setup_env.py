@@ -1,0 +1,93 @@
+"""What the set-up script installs, and what it says where it may not."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+SCRIPT = Path(__file__).resolve().parents[2] / "tools" / "setup_env.py"
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="system packages are installed on Linux only")
+
+
+@pytest.fixture
+def setup_env(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The script on a machine that has nothing, as an ordinary user; no command is really run."""
+    spec = importlib.util.spec_from_file_location("setup_env", SCRIPT)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    commands: list[list[str]] = []
+
+    def run(command: list[str], **_: Any) -> SimpleNamespace:
+        commands.append(command)
+        return SimpleNamespace(returncode=0)
+
+    monkeypatch.setattr(module, "VENV", tmp_path)
+    monkeypatch.setattr(module, "loads", lambda soname: False)
+    monkeypatch.setattr(module, "is_root", lambda: False)
+    monkeypatch.setattr(module.shutil, "which", lambda name: "/usr/bin/apt-get" if name == "apt-get" else None)
+    monkeypatch.setattr(module.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(module.subprocess, "run", run)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    module.commands = commands  # type: ignore[attr-defined]
+    return module
+
+
+def test_an_ordinary_user_is_told_the_one_command(
+    setup_env: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert setup_env.main("test") == 2
+    said = capsys.readouterr().err
+    packages = {*setup_env.QT_LIBRARIES.values(), *setup_env.X11_LIBRARIES.values(), "xvfb", "python3-venv"}
+    (command,) = [line for line in said.splitlines() if "apt-get install" in line]
+    assert command.strip().startswith("sudo apt-get install -y")
+    assert packages <= set(command.split())
+    assert setup_env.commands == []
+
+
+def test_without_apt_the_libraries_are_named(
+    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(setup_env.shutil, "which", lambda name: None)
+    assert setup_env.main("run") == 2
+    said = capsys.readouterr().err
+    assert all(soname in said for soname in setup_env.QT_LIBRARIES)
+    assert said.count("\n") == 1
+
+
+def test_root_installs_and_is_told_when_that_was_in_vain(
+    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(setup_env, "is_root", lambda: True)
+    assert setup_env.main("run") == 2
+    update, install = setup_env.commands
+    assert update[:2] == ["apt-get", "update"]
+    assert {"libgl1", "libxcb-cursor0", "python3-venv"} <= set(install)
+    assert capsys.readouterr().err.startswith("Still missing after apt-get install: libgl1 ")
+
+
+def test_a_virtual_x_server_is_welcome_but_not_needed(
+    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(setup_env, "loads", lambda soname: True)
+    monkeypatch.setattr(setup_env.importlib.util, "find_spec", lambda name: True)
+    assert setup_env.main("test") == 0
+    assert capsys.readouterr().err.startswith("Without xvfb the tests")
+    assert setup_env.commands[-1][-2:] == ["--editable", ".[test]"]
+    assert (setup_env.VENV / ".ready-test").exists()
+    assert (setup_env.VENV / ".ready-run").exists()
+
+
+def test_only_a_window_needs_the_libraries_of_x11(setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "libxcb-cursor0" not in setup_env.missing_packages("run")
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert "libxcb-cursor0" in setup_env.missing_packages("run")
