@@ -141,6 +141,7 @@ class CodeDock(FramedDock):
     def build(self) -> None:
         """Make the controls and the groups of numbers."""
         self._recent = Recent(4)
+        self._looks: dict[Group, tuple[bytes, bytes, Number]] = {}
         self._column_id = 0
         self._code: MsgCode | None = None
         self._measured: MsgCode | None = None
@@ -153,6 +154,7 @@ class CodeDock(FramedDock):
         self._chosen = Number("energy", 0)
         self.box = QDoubleSpinBox()
         self.box.setKeyboardTracking(False)
+        self.box.setDecimals(3)
         self.box.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
         self.box.valueChanged.connect(self._box_changed)
         self.add_control(self.box, "value", "The chosen number", "The number chosen below: type it")
@@ -283,6 +285,12 @@ class CodeDock(FramedDock):
 
     def _show_group(self, grid: CodeGrid, group: Group, code: MsgCode) -> None:
         found = values(code, group)
+        changed = differs(code, self._measured, group)
+        looks = (found.tobytes(), changed.tobytes(), self._chosen)
+        # While one group is dragged, the others need not be painted again.
+        if self._looks.get(group) == looks:
+            return
+        self._looks[group] = looks
         columns = COLUMNS[group]
         shape = (SIZES[group] // columns, columns)
         top = 75.0 if group in ("u", "v") else float(found.max()) or 1.0
@@ -295,7 +303,7 @@ class CodeDock(FramedDock):
         rows = {"residual": RESIDUAL_NAMES, "v": [""] * len(OCTAVE_NAMES)}.get(group, OCTAVE_NAMES)
         names = [""] if group == "residual" else ANGLE_NAMES
         grid.show_cells(places.reshape(shape), texts, rows, names, SEQUENTIAL_TABLE)
-        grid.mark_changed(differs(code, self._measured, group).reshape(shape))
+        grid.mark_changed(changed.reshape(shape))
         if self._chosen.group == group:
             grid.select(divmod(self._chosen.place, columns))
 
@@ -321,10 +329,12 @@ class CodeDock(FramedDock):
             return
         low, high = limits(code, number)
         with QSignalBlocker(self.box):
-            self.box.setDecimals(3)
-            self.box.setRange(low, high)
-            self.box.setPrefix(f"{title(number)}: ")
-            self.box.setSuffix(f" {unit(number)}".rstrip())
+            # Each of these has the line of controls arranged anew.
+            if (self.box.minimum(), self.box.maximum()) != (round(low, 3), round(high, 3)):
+                self.box.setRange(low, high)
+            if (prefix := f"{title(number)}: ") != self.box.prefix():
+                self.box.setPrefix(prefix)
+                self.box.setSuffix(f" {unit(number)}".rstrip())
             self.box.setValue(value(code, number))
 
     def _choose(self, number: Number) -> None:
