@@ -153,6 +153,67 @@ def slider(pointer: Pointer, explorer: Any) -> None:
     drag(pointer, explorer, handle.mapToGlobal(start), places, "slider")
 
 
+def cell(pointer: Pointer, explorer: Any) -> None:
+    """Drag a cell of the threshold table up and down."""
+    explorer.window.raise_dock("thresholds")
+    wait(lambda: explorer.idle)
+    pause(0.5)
+    editor = next(dock for dock in explorer.docks if dock.name == "thresholds").editor
+    start = editor.cell_rect(1, 3).center().toPoint()
+    steps = np.tile(np.r_[1:16, 14:-16:-1, -14:1] * 2, 4)[:EVENTS]
+    places = [editor.mapToGlobal(start + QPoint(0, int(step))) for step in steps]
+    drag(pointer, explorer, editor.mapToGlobal(start), places, "cell of the table")
+
+
+def explain(pointer: Pointer, explorer: Any) -> None:
+    """Point at pixels, one after the other, and at the end of quick moves."""
+    explorer.window.raise_dock("explain")
+    dock = next(dock for dock in explorer.docks if dock.name == "explain")
+    pane = explorer.workspace.columns[explorer.session.state.columns[0].id].pane
+    painted: list[tuple[float, tuple[int, int]]] = []
+
+    def place(row: int, column: int) -> QPoint:
+        return pane.viewport().mapToGlobal(pane.to_widget(row + 0.5, column + 0.5).toPoint())
+
+    def ask(row: int, column: int) -> tuple[float, float]:
+        pointer.move(place(row, column))
+        began = time.perf_counter()
+        probe = explorer.controller.scene().probe
+        wait(lambda: explorer.controller.scene().probe != probe, 5)
+        pixel = explorer.controller.scene().probe
+        wait(lambda: bool(painted) and painted[-1][1] == (pixel.row, pixel.column), 5)
+        return began, painted[-1][0]
+
+    pointer.move(place(4, 4))
+    pause(0.5)
+    pointer.move(place(9, 9))
+    wait(lambda: dock.answer is not None)
+    view = next(iter(dock._views.values()))
+    paint = type(view.structure).paintEvent
+
+    def paint_event(event: Any) -> None:
+        paint(view.structure, event)
+        painted.append((time.perf_counter(), dock.answer[1].explanation.pixel))
+
+    view.structure.paintEvent = paint_event
+    pause(0.3)
+    random = np.random.default_rng(1)
+    times = []
+    for row, column in random.integers(20, 230, (EVENTS, 2)):
+        began, done = ask(int(row), int(column))
+        times.append(done - began)
+        pause(0.02)
+    print(f"explain, one pixel at a time: {quantiles(times)}")
+    times = []
+    for row, column in random.integers(20, 200, (30, 2)):
+        for step in range(20):
+            pointer.move(place(int(row) + step, int(column)))
+            pause(0.004)
+        began, done = ask(int(row) + 24, int(column) + 3)
+        times.append(done - began)
+    print(f"explain, after quick moves: {quantiles(times)}")
+
+
 def _handle(slider: Any) -> QPoint:
     from PySide6.QtWidgets import QStyle, QStyleOptionSlider
 
@@ -166,7 +227,7 @@ def main(what: str, columns: int) -> None:
     explorer = open_window(columns)
     pointer = Pointer()
     try:
-        {"slider": slider}[what](pointer, explorer)
+        {"slider": slider, "cell": cell, "explain": explain}[what](pointer, explorer)
     finally:
         explorer.window.close()
         explorer.window.deleteLater()

@@ -75,10 +75,10 @@ def test_the_soft_logarithm_has_a_zero_and_an_inverse():
 
 
 def test_columns_are_grouped_by_channel_or_by_kind(axes):
-    each = make_heads(axes, "each")
+    each = make_heads(axes.features, "each")
     assert [head.group for head in each] == ["red"] * 9 + ["green"] * 9 + ["blue"] * 9
     assert {feature.name for head in each for feature in head.features} == {each.name for each in axes.features}
-    together = make_heads(axes, "together")
+    together = make_heads(axes.features, "together")
     assert [head.group for head in together] == ["band"] + ["first derivatives"] * 4 + ["second derivatives"] * 4
     assert all([each.channel for each in head.features] == ["red", "green", "blue"] for head in together)
 

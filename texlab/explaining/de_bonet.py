@@ -240,7 +240,7 @@ def structure_of(explained: ExplainedPixel, level: int, candidate: int) -> Struc
     place = len(explanation.levels) - 1 - level
     every = explanation.candidate_structures(level, np.array(explained.marked[place]))
     names = [each.name for each in explanation.features]
-    heads = make_heads(axes, "each")
+    heads = make_heads(axes.features, "each")
     order = [names.index(head.first.name) for head in heads]
     rows = every.shape[1]
     return Structure(

@@ -60,8 +60,14 @@ class EditableTable(TableMap):
         if view is not None and self._view is not None and self.busy:
             view = replaced(view, self._view.table)
         super().show_view(view)
-        if view is not None:
-            self.select(self._selection)
+        if view is None:
+            return
+        kept = self._selection.within(*view.values.shape)
+        if kept != self._selection:
+            self.select(kept)
+        else:
+            self._describe()
+            self.value_changed.emit()
 
     # Selection and locks.
 

@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
-from itertools import product
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from PySide6.QtCore import QEvent, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.theme import DARK, LIGHT
+from texlab.thresholds.numbers import NumberWriter
 from texlab.thresholds.painting import CHANNEL_COLOURS, cell_colours, colours, draw_corner, draw_glyph, draw_lock
 from texlab.thresholds.table import cell_text
 
 if TYPE_CHECKING:
-    from PySide6.QtGui import QPaintEvent
+    from PySide6.QtGui import QPaintEvent, QResizeEvent
 
     from texlab.theme import Theme
-    from texlab.thresholds.table import TableView
+    from texlab.thresholds.table import Head, TableView
 
-NARROW = 0.82
 GROUP_GAP = 5.0
 STRIP = 3.0
+
+
+class Grid(NamedTuple):
+    """Left sides of the columns, top of the first row, size of a cell; measured for these heads."""
+
+    lefts: tuple[float, ...]
+    top: float
+    width: float
+    height: float
+    heads: tuple[Head, ...]
 
 
 class TableMap(QWidget):
@@ -36,6 +46,8 @@ class TableMap(QWidget):
         self._small = small
         self._theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
         self._view: TableView | None = None
+        self._grid: Grid | None = None
+        self._writer: NumberWriter | None = None
         self._locked: frozenset[tuple[int, str]] = frozenset()
         vertical = QSizePolicy.Policy.Fixed if small else QSizePolicy.Policy.Expanding
         self.setSizePolicy(QSizePolicy.Policy.Expanding, vertical)
@@ -47,11 +59,12 @@ class TableMap(QWidget):
 
     def show_view(self, view: TableView | None) -> None:
         """Show a table."""
-        resized = self._view is None or view is None or view.values.shape != self._view.values.shape
-        self._view = view
-        if resized:
+        before, self._view = self._view, view
+        if before is None or view is None or view.values.shape != before.values.shape:
+            self._grid = None
             self.updateGeometry()
-        self.update()
+        if before is None or view is None or not view.looks_like(before):
+            self.update()
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
@@ -61,8 +74,14 @@ class TableMap(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         """Follow the palette where nobody tells about the theme."""
         super().changeEvent(event)
+        self._grid = None
         if event.type() == QEvent.Type.PaletteChange:
             self.set_theme(DARK if self.palette().window().color().lightness() < 128 else LIGHT)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Measure anew."""
+        super().resizeEvent(event)
+        self._grid = None
 
     def sizeHint(self) -> QSize:
         """Ask for rows that can be read."""
@@ -80,47 +99,42 @@ class TableMap(QWidget):
 
     def cell_rect(self, row: int, column: int) -> QRectF:
         """Return where a cell is painted."""
-        left, top, width, height = self._geometry()
-        return QRectF(left + column * width + self._gap(column), top + row * height, width, height)
+        grid = self._geometry()
+        return QRectF(grid.lefts[column], grid.top + row * grid.height, grid.width, grid.height)
 
     def row_rect(self, row: int) -> QRectF:
         """Return where the head of a row is painted."""
-        left, top, _, height = self._geometry()
-        return QRectF(0, top + row * height, left, height)
+        grid = self._geometry()
+        return QRectF(0, grid.top + row * grid.height, grid.lefts[0], grid.height)
 
     def column_rect(self, column: int) -> QRectF:
         """Return where the head of a column is painted."""
-        cell = self.cell_rect(0, column)
-        return QRectF(cell.left(), 0, cell.width(), self._top())
+        grid = self._geometry()
+        return QRectF(grid.lefts[column], 0, grid.width, grid.top)
 
     def at(self, x: float, y: float) -> tuple[int, int] | None:
         """Return the cell at a place; row -1 is the head of a column, column -1 that of a row."""
         if self._view is None:
             return None
-        left, top, width, height = self._geometry()
-        rows, columns = self._view.values.shape
-        row = -1 if y < top else int((y - top) // height)
-        column = -1
-        if x >= left:
-            lefts = [self.cell_rect(0, place).left() for place in range(columns)]
-            column = max(0, int(np.searchsorted(lefts, x, side="right")) - 1)
-            if x >= lefts[-1] + width:
-                return None
-        return (row, column) if row < rows and (row >= 0 or column >= 0) else None
+        grid = self._geometry()
+        row = -1 if y < grid.top else int((y - grid.top) // grid.height)
+        column = int(np.searchsorted(grid.lefts, x, side="right")) - 1
+        inside = row < self._view.axes.depth and x < grid.lefts[-1] + grid.width
+        return (row, column) if inside and max(row, column) >= 0 else None
 
-    def _gap(self, column: int) -> float:
-        """Return how much room the gaps between groups take before a column."""
+    def _geometry(self) -> Grid:
+        """Return where the cells are; measured anew when size, font or heads are others."""
         assert self._view is not None
         heads = self._view.heads
-        return GROUP_GAP * sum(heads[k].group != heads[k + 1].group for k in range(column))
-
-    def _geometry(self) -> tuple[float, float, float, float]:
-        """Return left and top of the first cell, width and height of each."""
-        assert self._view is not None
-        rows, columns = self._view.values.shape
-        left, top = self._left(), self._top()
-        width = max(3.0, (self.width() - left - 1 - self._gap(columns - 1)) / columns)
-        return left, top, width, max(3.0, (self.height() - top - 1) / max(rows, 1))
+        if self._grid is None or self._grid.heads is not heads:
+            rows, columns = self._view.values.shape
+            left, top = self._left(), self._top()
+            gaps = [0.0, *(GROUP_GAP * (one.group != other.group) for one, other in pairwise(heads))]
+            width = max(3.0, (self.width() - left - 1 - sum(gaps)) / columns)
+            lefts = left + np.arange(columns) * width + np.cumsum(gaps)
+            height = max(3.0, (self.height() - top - 1) / max(rows, 1))
+            self._grid = Grid(tuple(lefts.tolist()), top, width, height, heads)
+        return self._grid
 
     def _left(self) -> float:
         if self._view is None:
@@ -203,48 +217,32 @@ class TableMap(QWidget):
         view = self._view
         assert view is not None
         table = colours(view.values)
-        fonts = self._number_fonts()
+        writer = self._writer_for_cells()
         for row in range(view.values.shape[0]):
             for column in range(view.values.shape[1]):
                 area = self.cell_rect(row, column).adjusted(0, 0, -1, -1)
                 fill, ink = cell_colours(*(int(part) for part in table[row, column]))
                 painter.fillRect(area, fill)
                 if not self._small:
-                    value = float(view.values[row, column])
-                    texts = (
-                        ["≠"] if view.mixed[row, column] else [cell_text(value, digits) for digits in (3, 2, 1)]
-                    )
                     painter.setPen(ink)
-                    _write(painter, texts, area, fonts[bool(view.changed[row, column])])
+                    bold = bool(view.changed[row, column])
+                    writer.write(painter, _texts(view, row, column), area, bold=bold)
                 if view.changed[row, column]:
                     draw_corner(painter, area, ink)
                 if self._locked and all(cell in self._locked for cell in view.cells(row, column)):
                     draw_lock(painter, area, ink)
 
-    def _number_fonts(self) -> tuple[QFont, QFont]:
-        plain = QFont(self.font())
-        bold = QFont(plain)
-        bold.setBold(True)
-        return plain, bold
+    def _writer_for_cells(self) -> NumberWriter:
+        grid = self._geometry()
+        key = (self.font().key(), grid.width - 1, grid.height - 1)
+        if self._writer is None or self._writer.key != key:
+            self._writer = NumberWriter(self.font(), grid.width - 1, grid.height - 1)
+        return self._writer
 
 
-def _write(painter: QPainter, texts: list[str], area: QRectF, font: QFont) -> None:
-    """Write a number across a cell, smaller or shorter when it must be, or upwards in a narrow cell."""
-    for words, size in product(texts, (1.0, NARROW)):
-        fitted = QFont(font)
-        fitted.setPointSizeF(font.pointSizeF() * size)
-        metrics = QFontMetricsF(fitted)
-        long, high = metrics.horizontalAdvance(words), metrics.ascent() + metrics.descent() - 2
-        if long <= area.width() - 2 and high <= area.height() + 2:
-            painter.setFont(fitted)
-            painter.drawText(area, Qt.AlignmentFlag.AlignCenter, words)
-            return
-        if long <= area.height() - 2 and high <= area.width() + 2:
-            painter.setFont(fitted)
-            painter.save()
-            painter.translate(area.center())
-            painter.rotate(-90)
-            turned = QRectF(-area.height() / 2, -area.width() / 2, area.height(), area.width())
-            painter.drawText(turned, Qt.AlignmentFlag.AlignCenter, words)
-            painter.restore()
-            return
+def _texts(view: TableView, row: int, column: int) -> tuple[str, ...]:
+    """Return what may be written into a cell, the fullest first."""
+    if view.mixed[row, column]:
+        return ("≠",)
+    value = float(view.values[row, column])
+    return tuple(cell_text(value, digits) for digits in (3, 2, 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -132,14 +133,15 @@ class Head:
         return f"{self.first.channel}, {what}" if len(self.features) == 1 else what
 
 
-def make_heads(axes: Axes, arrangement: Arrangement) -> tuple[Head, ...]:
+@lru_cache(maxsize=32)
+def make_heads(features: tuple[Feature, ...], arrangement: Arrangement) -> tuple[Head, ...]:
     """Return the columns: channel by channel, or one for all channels together."""
-    channels = axes.channels
+    channels = list(dict.fromkeys(feature.channel for feature in features))
     if arrangement == "each" and len(channels) > 1:
-        ordered = sorted(axes.features, key=lambda feature: channels.index(feature.channel))
+        ordered = sorted(features, key=lambda feature: channels.index(feature.channel))
         return tuple(Head((feature,), feature.channel) for feature in ordered)
     kinds: dict[tuple[str, float], list[Feature]] = {}
-    for feature in axes.features:
+    for feature in features:
         kinds.setdefault((feature.kind, feature.angle), []).append(feature)
     return tuple(Head(tuple(found), GROUPS[kind]) for (kind, _), found in kinds.items())
 
@@ -168,6 +170,16 @@ class TableView:
     changed: NDArray[np.bool_]
     mixed: NDArray[np.bool_]
 
+    def looks_like(self, other: TableView) -> bool:
+        """Whether another view shows the same."""
+        return (
+            self.heads == other.heads
+            and self.axes.sizes == other.axes.sizes
+            and np.array_equal(self.values, other.values)
+            and np.array_equal(self.changed, other.changed)
+            and np.array_equal(self.mixed, other.mixed)
+        )
+
     def cells(self, row: int, column: int) -> list[Cell]:
         """Return the cells of the table under a cell of the view."""
         return [(row + 1, feature.name) for feature in self.heads[column].features]
@@ -192,7 +204,7 @@ class TableView:
 
 def make_view(axes: Axes, arrangement: Arrangement, table: ThresholdTable, law: tuple[float, float]) -> TableView:
     """Return a table as it is shown; ``law`` is alpha and beta."""
-    return _fill(axes, make_heads(axes, arrangement), table, threshold_law(*law, axes.depth))
+    return _fill(axes, make_heads(axes.features, arrangement), table, threshold_law(*law, axes.depth))
 
 
 def _fill(
