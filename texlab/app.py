@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import signal
 import sys
 from typing import TYPE_CHECKING, cast
 
@@ -14,6 +16,8 @@ from texlab.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window import MainWindow
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from texlab.explorer import Explorer
 
 SWITCH_INTERVAL_S = 0.001
@@ -63,9 +67,25 @@ def run_gui(image: str | None = None) -> int:
 
     # The shell is painted before the rest is imported.
     QTimer.singleShot(0, lambda: QTimer.singleShot(0, fill))
-    code = app.exec()
+    with closed_by_signals(window):
+        code = app.exec()
     window.deleteLater()
     return code
+
+
+@contextlib.contextmanager
+def closed_by_signals(window: MainWindow) -> Iterator[None]:
+    """Close the window properly on Ctrl+C in the terminal and when the system asks the program to end."""
+
+    def close(*_: object) -> None:
+        QTimer.singleShot(0, window.close)
+
+    before = {number: signal.signal(number, close) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def screenshot(

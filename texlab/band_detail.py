@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVB
 from texlab.comparison_view import HistogramPlot, NumbersTable
 from texlab.plots import ColourBar, PicturePane, number
 from texlab.pyramid_pictures import BandLarge, band_table
-from texlab.views.image_pane import ViewLink
+from texlab.views.view_link import ViewLink
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent

@@ -130,7 +130,7 @@ class Controller(QObject):
     def busy(self) -> bool:
         """Whether any column waits or runs, or the exemplar is being prepared."""
         running = any(each.live or each.scene.status in ("waiting", "running") for each in self._runtimes.values())
-        return running or self._exemplar_worker.busy or bool(self._once_workers)
+        return running or self._preparing or bool(self._once_workers)
 
     # What the user does.
 
@@ -158,12 +158,12 @@ class Controller(QObject):
             # An exemplar that is still being prepared starts the columns at full size when it comes.
             self._settle(final, () if self._preparing else tuple(self._runtimes))
 
-    def edit_scale(self, scale: float) -> None:
+    def edit_scale(self, scale: float, merge: object | None = None) -> None:
         """Scale the source; the crop is scaled along."""
         sample = self.session.state.sample
         if sample is None or scale == sample.scale:
             return
-        self.session.set_sample(rescaled(sample, scale), merge="scale")
+        self.session.set_sample(rescaled(sample, scale), merge=merge)
 
     @contextlib.contextmanager
     def _drag(self, dragging: bool) -> Any:
@@ -317,11 +317,12 @@ class Controller(QObject):
             if not self._cropping:
                 runtime.worker.cancel()
                 self._set(column_id, status="idle" if sample is None else "waiting", message="", result=None)
+        self._preparing = sample is not None
         if sample is None:
+            self._exemplar_worker.cancel()
             self._prepared = None
             return
         before = self._prepared
-        self._preparing = True
         self._exemplar_worker.submit(lambda task: prepare(sample, before), patient=self._cropping)
 
     def _exemplar_prepared(self, prepared: Prepared) -> None:

@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog, QMenu, QMessageBox
 
+from texlab.autosave import Autosave
 from texlab.controller import Controller, Prepared
 from texlab.crash import CrashHandler
 from texlab.dock_host import DockHost
@@ -25,7 +26,7 @@ from texlab.overlays import Overlays
 from texlab.pictures import describe_pixel, to_picture
 from texlab.preset_manager import PresetManager
 from texlab.session import Column, Session, State
-from texlab.settings import columns_from_json, seed_and_size, session_to_json
+from texlab.settings import columns_from_json, seed_and_size
 from texlab.views.help import HelpWindow
 from texlab.views.palette import CommandPalette
 from texlab.views.workspace import Workspace
@@ -53,6 +54,7 @@ FIRST_TEXTURE = "gallery:structured-pebbles"
 FIRST_CROP = Crop(16, 16, 128, 128)
 THUMBNAIL = 48
 MEMORY_MS = 2000
+TURN_MS = 600
 
 
 class Explorer(QObject):
@@ -69,6 +71,7 @@ class Explorer(QObject):
         self.controller = Controller(self.session, themes, self)
         self.opener = Opener(self.session, self.controller, settings, lambda path: self.presets.import_file(path))
         self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
+        self.autosave = Autosave(self.session, settings, self)
         self.crash = CrashHandler(self)
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
         self.workspace.set_theme(themes.theme)
@@ -82,6 +85,11 @@ class Explorer(QObject):
         self.hosts = [DockHost(dock, self._dock_slots, self) for dock in self.docks]
         self._thumbnails = Worker("thumbnails", parent=self)
         self._warming = Worker("warming", parent=self)
+        self._turned = ""
+        self._turning = QTimer(self)
+        self._turning.setSingleShot(True)
+        self._turning.setInterval(TURN_MS)
+        self._turning.timeout.connect(lambda: self.session.finish_merge(self._turned))
         self._memory = QTimer(self)
         self._memory.setInterval(MEMORY_MS)
         self._memory.timeout.connect(lambda: window.memory_label.setText(memory_text()))
@@ -144,9 +152,11 @@ class Explorer(QObject):
             return
         self._closed = True
         self._memory.stop()
+        self._turning.stop()
         self.window.remember_geometry()
-        self.settings.values["session"] = session_to_json(self.session.state, self.session.selected_id)
-        self.settings.save()
+        # Nobody has to watch the threads come to their end.
+        self.window.hide()
+        self.autosave.close()
         for host in self.hosts:
             host.close()
         self._thumbnails.close()
@@ -170,11 +180,9 @@ class Explorer(QObject):
         window.dropped.connect(self.opener.open)
         window.closing.connect(self.close)
         window.gallery.chosen.connect(self.opener.open)
-        window.seed_box.valueChanged.connect(session.set_seed)
+        window.seed_box.valueChanged.connect(lambda seed: self._turn("seed", partial(session.set_seed, seed)))
         for box in (window.width_box, window.height_box):
-            box.valueChanged.connect(
-                lambda _: session.set_size((window.height_box.value(), window.width_box.value()))
-            )
+            box.valueChanged.connect(lambda _: self._turn("size", partial(session.set_size, window.size_shown)))
         parameters = window.parameters
         parameters.edited.connect(controller.edit_params)
         parameters.reset_wanted.connect(controller.reset_params)
@@ -194,7 +202,7 @@ class Explorer(QObject):
         self.workspace.column_made.connect(self._connect_column)
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)
-        exemplar.scale_changed.connect(controller.edit_scale)
+        exemplar.scale_changed.connect(lambda scale: self._turn("scale", partial(controller.edit_scale, scale)))
         exemplar.hovered.connect(self._exemplar_hovered)
         for dock in self.docks:
             dock.set_theme(self.themes.theme)
@@ -265,6 +273,14 @@ class Explorer(QObject):
         view.map_chosen.connect(self.overlays.choose)
 
     # What the user does.
+
+    def _turn(self, what: str, change: Any) -> None:
+        """Make ``change(merge=what)``: turns of a number box without a pause are one step of the history."""
+        if what != self._turned:
+            self.session.finish_merge(self._turned)
+        self._turned = what
+        change(merge=what)
+        self._turning.start()
 
     def _choose_method(self, column_id: int, method: str) -> None:
         self.session.set_method(column_id, method, methods()[method].params())
@@ -419,17 +435,17 @@ class Explorer(QObject):
             return
         name = sample.source.name
         prepared = self.controller.prepared
-        line = ""
+        parts = []
         if prepared is not None:
             height, width = prepared.exemplar.size
             kind = "gray" if prepared.exemplar.channels == 1 else "colour"
-            line = f"{width} x {height} {kind}"
-            if sample.source.notes:
-                line += " · " + " ".join(sample.source.notes)
-        self.workspace.exemplar.show_choice(name.removeprefix("gallery:"), line, sample.scale, sample.crop)
+            parts = [f"{width} x {height} {kind}", *sample.source.notes]
+        self.workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
         self.window.actions_by_name["crop"].setChecked(sample.crop is not None)
         if name != self._shown_exemplar:
             self._shown_exemplar = name
+            # What was said was about the exemplar before.
+            self.window.message_bar.hide()
             self.window.gallery.mark(name)
             self.window.setWindowTitle(f"{name.removeprefix('gallery:')} - TexLab")
             self.window.show_recent(self.settings.recent, lambda path, _=False: self.opener.open(path))

@@ -11,7 +11,8 @@ from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.theme import configure_pyqtgraph
-from texlab.views.image_pane import ImagePane, ViewLink
+from texlab.views.image_pane import ImagePane
+from texlab.views.view_link import ViewLink
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from texlab_core.params import Params
 
 MAX_HISTORY = 200
+MAX_HISTORY_BYTES = 2**30
 
 
 @dataclass(frozen=True)
@@ -131,13 +132,26 @@ class Session(QObject):
             self._entries[self._at] = _Entry(state, text, merge)
         else:
             self._entries.append(_Entry(state, text, merge))
-            del self._entries[: max(0, len(self._entries) - MAX_HISTORY)]
+            self._forget_oldest()
             self._at = len(self._entries) - 1
         self._announce(before)
 
-    def finish_merge(self) -> None:
-        """End a drag: the next change is a step of its own."""
-        self._entries[self._at].merge = None
+    def _forget_oldest(self) -> None:
+        """Keep the history short, and the pictures in it (held once each) within their limit."""
+        first, held = len(self._entries), dict[int, int]()
+        for entry in reversed(self._entries[-MAX_HISTORY:]):
+            if entry.state.sample is not None:
+                pixels = entry.state.sample.source.pixels
+                held[id(pixels)] = pixels.nbytes
+            if sum(held.values()) > MAX_HISTORY_BYTES and first < len(self._entries):
+                break
+            first -= 1
+        del self._entries[:first]
+
+    def finish_merge(self, merge: object | None = None) -> None:
+        """End a drag (any, or the one with this key): the next change is a step of its own."""
+        if merge is None or self._entries[self._at].merge == merge:
+            self._entries[self._at].merge = None
 
     def reset_history(self) -> None:
         """Forget the history and keep the present state."""
@@ -189,13 +203,13 @@ class Session(QObject):
         text = "crop or scale" if same_source else f"exemplar {sample.source.name}"
         self.apply(dataclasses.replace(self.state, sample=sample), text, merge=merge)
 
-    def set_seed(self, seed: int) -> None:
+    def set_seed(self, seed: int, *, merge: object | None = None) -> None:
         """Set the seed, 0 .. 2147483647."""
-        self.apply(dataclasses.replace(self.state, seed=min(max(seed, 0), MAX_SEED)), f"seed {seed}")
+        self.apply(dataclasses.replace(self.state, seed=min(max(seed, 0), MAX_SEED)), f"seed {seed}", merge=merge)
 
-    def set_size(self, size: tuple[int, int]) -> None:
+    def set_size(self, size: tuple[int, int], *, merge: object | None = None) -> None:
         """Set the height and width of the results."""
-        self.apply(dataclasses.replace(self.state, size=size), f"size {size[1]} x {size[0]}")
+        self.apply(dataclasses.replace(self.state, size=size), f"size {size[1]} x {size[0]}", merge=merge)
 
     def set_params(self, column_id: int, params: Params, text: str, *, merge: object | None = None) -> None:
         """Set a column's parameters."""

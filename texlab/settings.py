@@ -54,12 +54,20 @@ class Settings:
         """Put a path first among the recent ones."""
         self.values["recent"] = [path, *(other for other in self.recent if other != path)][:MAX_RECENT]
 
+    def to_json(self) -> str:
+        """Return what the file will hold."""
+        return json.dumps(self.values, indent=1)
+
     def save(self) -> None:
         """Write the file; a failure is logged, never shown: nothing the user made is lost by it."""
+        self.write(self.to_json())
+
+    def write(self, text: str) -> None:
+        """Write this as the file; may be called in any thread."""
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self._path, json.dumps(self.values, indent=1).encode())
-        except OSError as error:
+            write_whole(self._path, text.encode())
+        except (OSError, InputError) as error:
             log.warning("The settings could not be saved: %s", error)
 
 

@@ -160,6 +160,10 @@ def stylesheet(theme: Theme) -> str:
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
     QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
+    QMainWindow > QTabBar::tab {{ padding: 4px 8px; border: none; border-top: 2px solid transparent; }}
+    QMainWindow > QTabBar::tab:!selected {{ color: {theme.muted}; }}
+    QMainWindow > QTabBar::tab:selected {{ background: {theme.base}; border-top-color: {theme.accent}; }}
+    QMainWindow > QTabBar::tab:hover {{ color: {theme.text}; }}
     QFrame#column {{ border: 2px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
     QFrame#column[chosen="true"] {{ border-color: {theme.accent}; }}
     QFrame#column[failed="true"] {{ border-color: {theme.error}; }}
@@ -185,6 +189,15 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     boxes.setColor(QPalette.ColorRole.Base, QColor(theme.border if theme.name == "dark" else theme.base))
     application.setPalette(boxes, "QCheckBox")  # type: ignore[arg-type]  # Qt wants text
     application.setStyleSheet(stylesheet(theme))
+
+
+def set_text_size(application: QApplication, points: float) -> None:
+    """Make all texts larger or smaller."""
+    font = application.font()
+    font.setPointSizeF(points)
+    application.setFont(font)
+    # Widgets that a style sheet has touched keep their font until it is set again.
+    application.setStyleSheet(application.styleSheet())
 
 
 def configure_pyqtgraph() -> Any:

@@ -6,7 +6,7 @@ import base64
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QByteArray, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QByteArray, QChildEvent, QEvent, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QActionGroup, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QApplication,
@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QMainWindow,
     QMenu,
     QSpinBox,
+    QTabBar,
     QToolBar,
     QToolButton,
     QVBoxLayout,
@@ -22,7 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.actions import COMMANDS, make_actions
-from texlab.theme import apply_theme
+from texlab.theme import apply_theme, set_text_size
 from texlab.views.gallery import GalleryView
 from texlab.views.message_bar import MessageBar
 from texlab.views.parameters import ParametersView
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from texlab.theme import Theme, ThemeSource
 
 MAX_SIDE = 4096
+TEACH_FACTOR = 1.35
 
 
 class MainWindow(QMainWindow):
@@ -59,11 +61,15 @@ class MainWindow(QMainWindow):
         self.resize(1280, 800)
         self.settings = settings
         self.themes = themes
+        self._points = QApplication.font().pointSizeF()
         self.actions_by_name = make_actions(self)
         self.docks: dict[str, QDockWidget] = {}
         self.message_bar = MessageBar()
         self._middle = QWidget()
         self._middle.setObjectName("middle")
+        # Keys are commands until a field is clicked: the search field must not get them first.
+        self._middle.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self._middle.setFocus()
         self._middle_layout = QVBoxLayout(self._middle)
         self._middle_layout.setContentsMargins(0, 0, 0, 0)
         self._middle_layout.setSpacing(0)
@@ -83,6 +89,8 @@ class MainWindow(QMainWindow):
         self._make_status()
         self._restore_geometry()
         self.show_theme(themes.theme)
+        if settings.text("layout") == "teach":
+            self._set_text_size("teach")
         themes.changed.connect(self.show_theme)
 
     # Building.
@@ -100,6 +108,8 @@ class MainWindow(QMainWindow):
         """Put the images into the middle."""
         self._middle_layout.replaceWidget(self._loading, workspace)
         self._loading.deleteLater()
+        if self._middle.hasFocus() or self.focusWidget() is None:
+            workspace.setFocus()
         self._middle_layout.setStretchFactor(workspace, 1)
 
     def add_docks(self, docks: list[Dock]) -> None:
@@ -180,7 +190,7 @@ class MainWindow(QMainWindow):
         self.seed_box.setRange(0, MAX_SEED)
         self.seed_box.setKeyboardTracking(False)
         self.seed_box.setToolTip("Seed of all columns: the same seed and parameters make the same bits")
-        self.seed_box.setMaximumWidth(110)
+        self.seed_box.setValue(1)
         bar.addWidget(self.seed_box)
         bar.addAction(act["dice"])
         bar.addSeparator()
@@ -193,7 +203,7 @@ class MainWindow(QMainWindow):
             box.setSingleStep(32)
             box.setKeyboardTracking(False)
             box.setToolTip(f"{name} of the results, in pixels")
-            box.setMaximumWidth(76)
+            box.setValue(256)
         bar.addWidget(self.width_box)
         bar.addWidget(QLabel(" × "))
         bar.addWidget(self.height_box)
@@ -230,6 +240,11 @@ class MainWindow(QMainWindow):
         bar.addWidget(self.pixel_label, 1)
         bar.addPermanentWidget(self.jobs_label)
         bar.addPermanentWidget(self.memory_label)
+
+    @property
+    def size_shown(self) -> tuple[int, int]:
+        """Height and width in the boxes."""
+        return self.height_box.value(), self.width_box.value()
 
     # Showing.
 
@@ -274,9 +289,7 @@ class MainWindow(QMainWindow):
         gallery, parameters = self.docks["gallery"], self.docks["parameters"]
         gallery.setVisible(layout == "explore")
         parameters.setVisible(layout != "teach")
-        font = QApplication.font()
-        font.setPointSizeF(self._base_points() * (1.35 if layout == "teach" else 1.0))
-        QApplication.setFont(font)
+        self._set_text_size(layout)
         tabs = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
         for dock in tabs:
             dock.show()
@@ -297,9 +310,10 @@ class MainWindow(QMainWindow):
             dock.raise_()
             dock.widget().setFocus()
 
-    def _base_points(self) -> float:
-        value = self.settings.values.setdefault("points", QApplication.font().pointSizeF())
-        return float(value) if isinstance(value, int | float) and 4 <= value <= 40 else 10.0
+    def _set_text_size(self, layout: str) -> None:
+        application = QApplication.instance()
+        if isinstance(application, QApplication):
+            set_text_size(application, self._points * (TEACH_FACTOR if layout == "teach" else 1.0))
 
     def _choose_theme(self, choice: Any) -> None:
         self.settings.values["theme"] = choice
@@ -317,6 +331,15 @@ class MainWindow(QMainWindow):
 
     # Events.
 
+    def event(self, event: QEvent) -> bool:
+        """Let the tabs of the docks keep their names whole when they come."""
+        if isinstance(event, QChildEvent) and event.type() == QEvent.Type.ChildPolished:
+            tabs = event.child()
+            if isinstance(tabs, QTabBar):
+                tabs.setElideMode(Qt.TextElideMode.ElideNone)
+                tabs.setUsesScrollButtons(True)
+        return super().event(event)
+
     def closeEvent(self, event: QCloseEvent) -> None:
         """Tell before the window goes."""
         self.closing.emit()
@@ -324,7 +347,8 @@ class MainWindow(QMainWindow):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take files and images."""
-        if event.mimeData().hasUrls() or event.mimeData().hasImage():
+        mime = event.mimeData()
+        if mime.hasImage() or any(url.isLocalFile() for url in mime.urls()):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:

@@ -17,7 +17,7 @@ from texlab.pyramid_controls import KINDS, BandCache, PyramidControls, channel_i
 from texlab.pyramid_pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.recent import Recent, Same
 from texlab.scene import Question
-from texlab.views.image_pane import ViewLink
+from texlab.views.view_link import ViewLink
 from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size
 

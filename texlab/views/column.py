@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import (
-    QComboBox,
+    QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QMenu,
     QProgressBar,
-    QSizePolicy,
     QToolButton,
     QVBoxLayout,
 )
 
 from texlab.views.image_pane import ImagePane
+from texlab.views.short_box import ShortBox
+from texlab.views.status_line import SEPARATOR, StatusLine, strut
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,9 +28,8 @@ if TYPE_CHECKING:
 
     from texlab.scene import ColumnScene
     from texlab.theme import Theme
-    from texlab.views.image_pane import ViewLink
+    from texlab.views.view_link import ViewLink
 
-STATUS_LINES = 3
 _SIGNS = {
     "idle": "",
     "waiting": "waits for a core",
@@ -75,11 +74,10 @@ class ColumnView(QFrame):
         self.setProperty("failed", False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumWidth(120)
-        self.method_box = QComboBox()
+        self.method_box = ShortBox()
         self.method_box.setObjectName(f"method-{column_id}")
         self.method_box.setAccessibleName("Method of this column")
         self.method_box.setToolTip("The method of this column")
-        self.method_box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         for identifier, title in methods:
             self.method_box.addItem(title, identifier)
         self.run_button = self._button("▶", "Run this column again", "run")
@@ -106,27 +104,22 @@ class ColumnView(QFrame):
         self.progress.setObjectName(f"progress-{column_id}")
         self.progress.setRange(0, 1000)
         self.progress.setTextVisible(False)
-        self.line = QLabel()
+        self.line = StatusLine()
         self.line.setObjectName(f"line-{column_id}")
-        self.line.setProperty("role", "muted")
-        self.line.setWordWrap(True)
-        self.line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        # The same height in all columns: the pictures stand side by side at the same level.
-        self.line.setFixedHeight(self.line.fontMetrics().lineSpacing() * STATUS_LINES + 2)
-        self.line.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.line.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        head = QHBoxLayout()
-        head.setSpacing(2)
-        head.addWidget(self.method_box, 1)
         self.stop_button.hide()
+        buttons = QHBoxLayout()
+        buttons.setSpacing(2)
+        buttons.addWidget(self.progress, 1, Qt.AlignmentFlag.AlignVCenter)
         for button in (self.run_button, self.stop_button, self.menu_button):
-            head.addWidget(button)
+            buttons.addWidget(button)
+        # The row is as high as that of the exemplar.
+        buttons.addWidget(strut(QDoubleSpinBox()))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.setSpacing(3)
-        layout.addLayout(head)
+        layout.addWidget(self.method_box)
         layout.addWidget(self.pane, 1)
-        layout.addWidget(self.progress)
+        layout.addLayout(buttons)
         layout.addWidget(self.line)
         self.method_box.activated.connect(
             lambda place: self.method_chosen.emit(self.column_id, self.method_box.itemData(place))
@@ -159,10 +152,10 @@ class ColumnView(QFrame):
         if before is None or before.picture is not scene.picture:
             self.pane.set_picture(scene.picture)
         self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
-        text = status_line(scene)
-        self.line.setText(text)
-        self.line.setToolTip(text)
-        role = "error" if scene.status == "failed" else "muted"
+        self.line.show_parts(status_parts(scene))
+        failed = scene.status == "failed"
+        self.pane.set_note(scene.message if failed and scene.picture is None else "")
+        role = "error" if failed else "muted"
         if self.line.property("role") != role:
             self.line.setProperty("role", role)
             _polish(self.line)
@@ -173,7 +166,7 @@ class ColumnView(QFrame):
         for name in ("export", "use"):
             self.actions_by_name[name].setEnabled(scene.result is not None)
         self.actions_by_name["copy"].setEnabled(scene.picture is not None)
-        self._set_flag("failed", scene.status == "failed")
+        self._set_flag("failed", failed)
 
     def show_maps(self, maps: tuple[tuple[str, str], ...], chosen: str) -> None:
         """Offer the maps (name, title) as overlays."""
@@ -220,9 +213,14 @@ class ColumnView(QFrame):
 
 
 def status_line(scene: ColumnScene) -> str:
-    """Return the line under a column's picture."""
+    """Return what is said under a column's picture, as one line."""
+    return SEPARATOR.join(status_parts(scene))
+
+
+def status_parts(scene: ColumnScene) -> list[str]:
+    """Return what is said under a column's picture."""
     if scene.status == "failed":
-        return scene.message
+        return [scene.message]
     parts = []
     sign = _SIGNS[scene.status]
     if sign:
@@ -238,12 +236,12 @@ def status_line(scene: ColumnScene) -> str:
         parts.append(f"about {left:.0f} s left" if left >= 1 else "almost done")
     if scene.status == "finished" and scene.result is not None:
         height, width = scene.result.image.shape[:2]
-        parts.append(f"{width} x {height}, {format_seconds(scene.elapsed_s)}")
+        parts += [f"{width} x {height}", format_seconds(scene.elapsed_s)]
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
         numbers = {**scene.result.measures, **scene.metrics}
         parts += [format_measure(name, numbers[name]) for name in _MEASURES if name in numbers][:MOST_NUMBERS]
-    return " · ".join(parts)
+    return parts
 
 
 MOST_NUMBERS = 3

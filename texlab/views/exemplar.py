@@ -5,23 +5,38 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import pyqtgraph as pg
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QColor
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
 
-from texlab.views.column import STATUS_LINES
-from texlab.views.image_pane import ImagePane, ViewLink
+from texlab.views.image_pane import ImagePane
+from texlab.views.short_box import ShortBox
+from texlab.views.status_line import StatusLine, strut
 from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.scene import Picture
     from texlab.theme import Theme
+    from texlab.views.view_link import ViewLink
 
 MIN_CROP = 8
-PROGRESS_HEIGHT = 7
+SETTLE_MS = 300
+_ARROWS = {
+    Qt.Key.Key_Up: (-1, 0),
+    Qt.Key.Key_Down: (1, 0),
+    Qt.Key.Key_Left: (0, -1),
+    Qt.Key.Key_Right: (0, 1),
+}
+_STEPS = {
+    Qt.KeyboardModifier.NoModifier: 1,
+    Qt.KeyboardModifier.ShiftModifier: 1,
+    Qt.KeyboardModifier.ControlModifier: 8,
+}
 
 
 class ExemplarView(QFrame):
@@ -48,7 +63,10 @@ class ExemplarView(QFrame):
         self.crop_button.setText("Crop")
         self.crop_button.setCheckable(True)
         self.crop_button.setAutoRaise(True)
-        self.crop_button.setToolTip("Use a part of the picture: drag the box or its corners (X)")
+        self.crop_button.setToolTip(
+            "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
+            "with Shift they resize it."
+        )
         self.scale_box = QDoubleSpinBox()
         self.scale_box.setObjectName("scale-box")
         self.scale_box.setAccessibleName("Scale of the exemplar")
@@ -62,29 +80,35 @@ class ExemplarView(QFrame):
         self.scale_box.setKeyboardTracking(False)
         self.scale_box.setPrefix("×")
         self.scale_box.setMaximumWidth(76)
-        self.line = QLabel()
+        self.line = StatusLine()
         self.line.setObjectName("exemplar-line")
-        self.line.setProperty("role", "muted")
-        self.line.setWordWrap(True)
-        self.line.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.line.setFixedHeight(self.line.fontMetrics().lineSpacing() * STATUS_LINES + 2)
-        self.line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
         self._box: Any = None
         self._name = ""
         self._crop: Crop | None = None
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(SETTLE_MS)
+        self._rest.timeout.connect(self._settle)
+        self.pane.installEventFilter(self)
         head = QHBoxLayout()
-        head.setSpacing(2)
+        head.setSpacing(0)
         head.addWidget(self.title, 1)
-        head.addWidget(self.crop_button)
-        head.addWidget(self.scale_box)
+        # The rows are as high as those of the columns.
+        head.addWidget(strut(ShortBox()))
+        controls = QHBoxLayout()
+        controls.setSpacing(2)
+        controls.addWidget(self.crop_button)
+        controls.addStretch(1)
+        controls.addWidget(strut(QToolButton()))
+        controls.addWidget(self.scale_box)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.setSpacing(3)
         layout.addLayout(head)
         layout.addWidget(self.pane, 1)
-        layout.addSpacing(PROGRESS_HEIGHT)
+        layout.addLayout(controls)
         layout.addWidget(self.line)
         self.crop_button.clicked.connect(self._toggle)
         self.scale_box.valueChanged.connect(self.scale_changed)
@@ -96,13 +120,12 @@ class ExemplarView(QFrame):
         if picture is not self.pane.picture:
             self.pane.set_picture(picture)
 
-    def show_choice(self, name: str, line: str, scale: float, crop: Crop | None) -> None:
+    def show_choice(self, name: str, parts: Sequence[str], scale: float, crop: Crop | None) -> None:
         """Show name, size and notes, scale and crop without emitting anything."""
         self._name = name
         self.title.setToolTip(name)
         self._elide()
-        self.line.setText(line)
-        self.line.setToolTip(line)
+        self.line.show_parts(parts)
         with QSignalBlocker(self.scale_box):
             self.scale_box.setValue(scale)
         with QSignalBlocker(self.crop_button):
@@ -132,6 +155,8 @@ class ExemplarView(QFrame):
             self._box.addScaleHandle([0, 0], [1, 1])
             self._box.addScaleHandle([1, 0], [0, 1])
             self._box.addScaleHandle([0, 1], [1, 0])
+            self._box.addScaleHandle([0, 0.5], [1, 0.5])
+            self._box.addScaleHandle([0.5, 0], [0.5, 1])
             for handle in self._box.getHandles():
                 # pyqtgraph makes these menus without a parent, and nobody would delete them.
                 handle.menu.setParent(self, handle.menu.windowFlags())
@@ -175,6 +200,39 @@ class ExemplarView(QFrame):
             self._show_crop(crop)
         self._crop = crop
         self.crop_changed.emit(crop, final)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Move and resize the box with the arrow keys."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress and self._crop is not None:
+            down, right = _ARROWS.get(Qt.Key(event.key()), (0, 0))
+            held = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
+            if (down or right) and held in _STEPS:
+                self._nudge(down * _STEPS[held], right * _STEPS[held], held == Qt.KeyboardModifier.ShiftModifier)
+                return True
+        return super().eventFilter(watched, event)
+
+    def _nudge(self, down: int, right: int, resize: bool) -> None:
+        picture, crop = self.pane.picture, self._crop
+        if picture is None or crop is None:
+            return
+        height, width = picture.shape[:2]
+        rows, columns, top, left = crop.height, crop.width, crop.top, crop.left
+        if resize:
+            rows = min(max(rows + down, min(MIN_CROP, height)), height - top)
+            columns = min(max(columns + right, min(MIN_CROP, width)), width - left)
+        else:
+            top = min(max(top + down, 0), height - rows)
+            left = min(max(left + right, 0), width - columns)
+        moved = Crop(top, left, rows, columns)
+        if moved != crop:
+            self._show_crop(moved)
+            # Keys have no release worth waiting for: they settle after a moment.
+            self._rest.start()
+            self.crop_changed.emit(moved, False)
+
+    def _settle(self) -> None:
+        if self._crop is not None:
+            self.crop_changed.emit(self._crop, True)
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

@@ -30,6 +30,8 @@ class GalleryView(QWidget):
         self.search.setPlaceholderText("Search textures")
         self.search.setClearButtonEnabled(True)
         self.search.setAccessibleName("Search textures")
+        # A picture dropped here is meant for the window.
+        self.search.setAcceptDrops(False)
         self.tree = QTreeWidget()
         self.tree.setObjectName("gallery-tree")
         self.tree.setAccessibleName("Textures of the gallery")

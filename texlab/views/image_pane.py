@@ -8,6 +8,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter
+from PySide6.QtWidgets import QLabel
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QEvent, QPoint
@@ -16,71 +17,10 @@ if TYPE_CHECKING:
 
     from texlab.scene import Mark, Picture
     from texlab.theme import Theme
+    from texlab.views.view_link import ViewLink
 
 
-class ViewLink:
-    """One rectangle of image coordinates that every pane shows.
-
-    ``setXLink`` before the first image breaks the automatic range, so the panes share a rectangle instead.
-    """
-
-    def __init__(self) -> None:
-        self._panes: list[ImagePane] = []
-        self._fitted = True
-        self._extent = (1, 1)
-
-    def join(self, pane: ImagePane) -> None:
-        """Make a pane follow the others."""
-        self._panes.append(pane)
-
-    def leave(self, pane: ImagePane) -> None:
-        """Let a pane go."""
-        if pane in self._panes:
-            self._panes.remove(pane)
-
-    def moved(self, source: ImagePane) -> None:
-        """Show in all panes what the user made one show."""
-        self._fitted = False
-        rectangle = source.view_rect()
-        for pane in self._panes:
-            if pane is not source:
-                pane.show_rect(rectangle)
-
-    def set_extent(self, height: int, width: int) -> None:
-        """Say how large the largest picture is or will be (a draft may be smaller for a moment)."""
-        if (height, width) != self._extent:
-            self._extent = (height, width)
-            self.extent_changed()
-
-    def extent_changed(self) -> None:
-        """Fit again when a picture changed its size and the user has not zoomed."""
-        if self._fitted:
-            self.fit()
-
-    def fit(self) -> None:
-        """Show the largest picture whole, and the others at the same scale."""
-        self._fitted = True
-        factor = 2 if any(pane.tiled for pane in self._panes) else 1
-        rectangle = QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
-        for pane in self._panes:
-            pane.show_rect(rectangle)
-
-    def actual_size(self) -> None:
-        """Show one image pixel per screen pixel around the present centre."""
-        self._fitted = False
-        for pane in self._panes:
-            pane.show_rect(pane.actual_rect())
-
-    def zoom(self, factor: float) -> None:
-        """Enlarge around the centre."""
-        self._fitted = False
-        for pane in self._panes:
-            centre = pane.view_rect().center()
-            rectangle = pane.view_rect()
-            size = rectangle.size() / factor
-            pane.show_rect(QRectF(centre - QPointF(size.width() / 2, size.height() / 2), size))
-
-
+NOTE_MARGIN = 8
 SMALLEST_MARK = 5.0
 MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
 
@@ -141,6 +81,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     # The base class resizes itself while it is made.
     _link: ViewLink | None = None
     _picture: Picture | None = None
+    _note: QLabel | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(parent, background=None)
@@ -158,7 +99,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.setMouseTracking(True)
         self.setMinimumSize(60, 60)
         self.view.sigRangeChangedManually.connect(self._moved)
-        self.view.sigResized.connect(lambda _: link.extent_changed())
+        self.view.sigResized.connect(lambda _: link.resized())
         self.scene().sigMouseMoved.connect(self._pointer_moved)
         link.join(self)
 
@@ -196,6 +137,25 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._choose_filter()
         self.painted.emit()
 
+    def set_note(self, text: str) -> None:
+        """Say something in the place of the picture; nothing with an empty text."""
+        if self._note is None and text:
+            self._note = QLabel(self)
+            self._note.setObjectName("pane-note")
+            self._note.setProperty("role", "error")
+            self._note.setWordWrap(True)
+            self._note.setTextFormat(Qt.TextFormat.PlainText)
+            self._note.setAlignment(Qt.AlignmentFlag.AlignCenter)
+            self._note.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        if self._note is not None:
+            self._note.setText(text)
+            self._note.setVisible(bool(text))
+            self._place_note()
+
+    def _place_note(self) -> None:
+        if self._note is not None:
+            self._note.setGeometry(self.rect().adjusted(NOTE_MARGIN, NOTE_MARGIN, -NOTE_MARGIN, -NOTE_MARGIN))
+
     def set_tiled(self, tiled: bool) -> None:
         """Show the picture 2 x 2 so that seams are seen."""
         if tiled == self._tiled:
@@ -209,7 +169,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.set_picture(self._picture)
         link = self._link
         if link is not None:
-            link.extent_changed()
+            link.resized()
 
     def set_overlay(self, picture: Picture | None, opacity: float = 0.6) -> None:
         """Lay a coloured map of the same size over the picture, or take it away."""
@@ -247,12 +207,15 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.view.setRange(rectangle, padding=0, disableAutoRange=True)
         self._choose_filter()
 
-    def actual_rect(self) -> QRectF:
-        """Return the rectangle that shows one image pixel per screen pixel."""
-        centre = self.view_rect().center()
-        ratio = self.devicePixelRatioF()
-        width, height = self.view.width() * ratio, self.view.height() * ratio
-        return QRectF(centre.x() - width / 2, centre.y() - height / 2, width, height)
+    @property
+    def shown_scale(self) -> float:
+        """Widget pixels per image pixel."""
+        return float(self.view.width() / max(self.view_rect().width(), 1e-9))
+
+    def show_around(self, centre: QPointF, scale: float) -> None:
+        """Show a place in the middle, at so many widget pixels per image pixel."""
+        width, height = self.view.width() / scale, self.view.height() / scale
+        self.show_rect(QRectF(centre.x() - width / 2, centre.y() - height / 2, width, height))
 
     def to_widget(self, row: float, column: float) -> QPointF:
         """Return where an image position is painted, in widget coordinates."""
@@ -266,8 +229,9 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit again when the user has not zoomed."""
         super().resizeEvent(event)
+        self._place_note()
         if self._link is not None:
-            self._link.extent_changed()
+            self._link.resized()
 
     def leaveEvent(self, event: QEvent) -> None:
         """Tell that the cursor has left."""

@@ -37,23 +37,29 @@ class MessageBar(QFrame):
         self._timer.setSingleShot(True)
         self._timer.setInterval(NEWS_MS)
         self._timer.timeout.connect(self.hide)
+        self._kind: Literal["problem", "news"] = "news"
         self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
         self.hide()
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
         self._colours = {"problem": theme.error, "news": theme.accent}
-        self.hide()
+        self._paint()
 
     def tell(self, sentence: str, kind: Literal["problem", "news"]) -> None:
         """Show a sentence."""
-        self.setStyleSheet(f"QFrame#message-bar {{ border-left: 4px solid {self._colours[kind]}; }}")
+        self._kind = kind
+        self._paint()
         self.label.setText(sentence)
         self.show()
         if kind == "news":
             self._timer.start()
         else:
             self._timer.stop()
+
+    def _paint(self) -> None:
+        colour = self._colours[self._kind]
+        self.setStyleSheet(f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; }}")
 
     def hideEvent(self, event: object) -> None:
         """Stop the clock."""

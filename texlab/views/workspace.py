@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QSplitter, QWidget
 from texlab.scene import Mark
 from texlab.views.column import ColumnView
 from texlab.views.exemplar import ExemplarView
-from texlab.views.image_pane import ViewLink
+from texlab.views.view_link import ViewLink
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -68,7 +68,7 @@ class Workspace(QScrollArea):
             for place, column_id in enumerate(wanted):
                 self.splitter.insertWidget(place + 1, self.columns[column_id])
             self.splitter.setSizes([1000] * (len(wanted) + 1))
-            self.link.extent_changed()
+            self.link.resized()
         for column in scene.columns:
             view = self.columns[column.id]
             view.show_scene(column)

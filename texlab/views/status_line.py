@@ -1,0 +1,105 @@
+"""The few lines under a picture: as many whole parts as fit, never half a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QRect, QSize, Qt
+from PySide6.QtWidgets import QLabel, QSizePolicy
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtGui import QResizeEvent
+    from PySide6.QtWidgets import QWidget
+
+LINES = 3
+SEPARATOR = " · "
+MORE = "…"
+_TALL = 10_000
+
+
+def strut(model: QWidget) -> QWidget:
+    """Return ``model`` as something unseen that keeps a row as high as itself, whatever the font."""
+    policy = model.sizePolicy()
+    policy.setRetainSizeWhenHidden(True)
+    model.setSizePolicy(policy)
+    model.setFixedWidth(1)
+    model.hide()
+    return model
+
+
+class StatusLine(QLabel):
+    """Shows parts of a sentence on a fixed number of lines; what does not fit is in the tool tip.
+
+    The height is the same whatever is shown: pictures side by side stay at the same level.
+    """
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._parts: tuple[str, ...] = ()
+        self.setProperty("role", "muted")
+        self.setWordWrap(True)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+    def show_parts(self, parts: Sequence[str]) -> None:
+        """Show these parts, the most important first."""
+        if tuple(parts) != self._parts:
+            self._parts = tuple(parts)
+            self.setToolTip(SEPARATOR.join(self._parts))
+            self._fit()
+
+    def sizeHint(self) -> QSize:
+        """Return the size of all lines."""
+        return QSize(0, self.fontMetrics().lineSpacing() * LINES + 2)
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the size of all lines."""
+        return self.sizeHint()
+
+    def heightForWidth(self, width: int) -> int:
+        """Return the height of all lines."""
+        return self.sizeHint().height()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Use the room there is."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the font."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self.updateGeometry()
+            self._fit()
+
+    def _fit(self) -> None:
+        shown = list(self._parts)
+        text = self._wrapped(shown)
+        while len(shown) > 1 and not self._fits(text):
+            shown.pop()
+            text = f"{self._wrapped(shown)} {MORE}"
+        words = text.split(" ")
+        while len(words) > 1 and not self._fits(text):
+            words.pop()
+            text = f"{' '.join(words).rstrip(' ' + MORE)} {MORE}"
+        self.setText(text)
+
+    def _wrapped(self, parts: Sequence[str]) -> str:
+        """Join parts, with a new line before one that would be broken."""
+        lines: list[str] = []
+        for part in parts:
+            longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
+            if lines and self.fontMetrics().horizontalAdvance(longer) <= self.width():
+                lines[-1] = longer
+            else:
+                lines.append(part)
+        return "\n".join(lines)
+
+    def _fits(self, text: str) -> bool:
+        room = QRect(0, 0, max(self.width(), 1), _TALL)
+        flags = int(Qt.TextFlag.TextWordWrap.value)
+        return self.fontMetrics().boundingRect(room, flags, text).height() <= self.sizeHint().height()

@@ -1,0 +1,78 @@
+"""What all panes show: the same place at the same scale."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPointF, QRectF
+
+if TYPE_CHECKING:
+    from texlab.views.image_pane import ImagePane
+
+
+class ViewLink:
+    """One place that every pane shows.
+
+    ``setXLink`` before the first image breaks the automatic range, so the panes are told instead. As long as the
+    user has not moved or zoomed, the largest picture is shown whole; afterwards the panes keep centre and scale
+    when they are resized, and new ones take them over.
+    """
+
+    def __init__(self) -> None:
+        self._panes: list[ImagePane] = []
+        self._extent = (1, 1)
+        self._centre = QPointF()
+        self._scale: float | None = None
+
+    def join(self, pane: ImagePane) -> None:
+        """Make a pane follow the others."""
+        self._panes.append(pane)
+
+    def leave(self, pane: ImagePane) -> None:
+        """Let a pane go."""
+        if pane in self._panes:
+            self._panes.remove(pane)
+
+    def moved(self, source: ImagePane) -> None:
+        """Show in all panes what the user made one show."""
+        self._centre, self._scale = source.view_rect().center(), source.shown_scale
+        for pane in self._panes:
+            if pane is not source:
+                pane.show_around(self._centre, self._scale)
+
+    def set_extent(self, height: int, width: int) -> None:
+        """Say how large the largest picture is or will be (a draft may be smaller for a moment)."""
+        if (height, width) != self._extent:
+            self._extent = (height, width)
+            if self._scale is None:
+                self.fit()
+
+    def resized(self) -> None:
+        """Show the same again after a pane came, changed its size or was tiled."""
+        if self._scale is None:
+            self.fit()
+            return
+        for pane in self._panes:
+            pane.show_around(self._centre, self._scale)
+
+    def fit(self) -> None:
+        """Show the largest picture whole, and the others at the same scale."""
+        self._scale = None
+        factor = 2 if any(pane.tiled for pane in self._panes) else 1
+        rectangle = QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
+        for pane in self._panes:
+            pane.show_rect(rectangle)
+
+    def actual_size(self) -> None:
+        """Show one image pixel per screen pixel around the present centre."""
+        if self._panes:
+            self._rescale(1 / self._panes[0].devicePixelRatioF())
+
+    def zoom(self, factor: float) -> None:
+        """Enlarge around the centre."""
+        if self._panes:
+            self._rescale(self._panes[0].shown_scale * factor)
+
+    def _rescale(self, scale: float) -> None:
+        self._centre, self._scale = self._panes[0].view_rect().center(), scale
+        self.resized()
