@@ -138,13 +138,14 @@ class ExplainDock(FramedDock):
         ):
             box.setEnabled(known)
             with QSignalBlocker(box):
-                box.setRange(0, max(side - 1, 0))
+                if box.maximum() != max(side - 1, 0):
+                    box.setMaximum(max(side - 1, 0))
                 box.setValue(value)
         self.release.setEnabled(probe is not None and probe.pinned)
         kept = probe is not None and probe.pinned
-        self.state.setText(
-            f"{column.title}, {'kept' if kept else 'under the pointer'}" if column is not None else ""
-        )
+        words = "" if column is None else f"{column.title}, {'kept' if kept else 'under the pointer'}"
+        if words != self.state.text():
+            self.state.setText(words)
 
     def _typed(self) -> None:
         probe = self._probe

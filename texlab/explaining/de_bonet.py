@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.explaining.base import Explainer, ExplanationView
 from texlab.explaining.levels_view import LevelsView, Tile
 from texlab.explaining.structure_view import Structure, StructureView
+from texlab.explaining.words import Words
 from texlab.pictures import to_picture
 from texlab.recent import Recent, Same
 from texlab.scene import Mark
-from texlab.theme import LIGHT
 from texlab.thresholds.table import KINDS, Axes, make_heads
 from texlab_core.inputs import exemplar_of
 from texlab_core.multiresolution.explain import explain
@@ -123,20 +123,14 @@ class DeBonetView(ExplanationView):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("explain-de-bonet")
-        self._theme: Theme = LIGHT
         self._explained: ExplainedPixel | None = None
         self._from_finest = 0
         self.levels = LevelsView("explain-levels")
         self.levels.selected.connect(self._select)
         self.levels.pointed.connect(self._point)
         self.structure = StructureView("explain-structure")
-        self.caption = QLabel()
-        self.caption.setObjectName("explain-caption")
-        self.caption.setProperty("role", "muted")
-        self.words = QLabel()
-        self.words.setObjectName("explain-words")
-        self.words.setWordWrap(True)
-        self.words.setAccessibleName("Why the pixel is there")
+        self.caption = Words("explain-caption", "What is compared", 1)
+        self.words = Words("explain-words", "Why the pixel is there", 2)
         right = QWidget()
         beside = QVBoxLayout(right)
         beside.setContentsMargins(0, 0, 0, 0)
@@ -155,11 +149,8 @@ class DeBonetView(ExplanationView):
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
-        self._theme = theme
-        self.levels.set_theme(theme)
-        self.structure.set_theme(theme)
-        if self._explained is not None:
-            self._show_level(*self.levels.current)
+        for part in (self.levels, self.structure, self.caption, self.words):
+            part.set_theme(theme)
 
     def show_explanation(self, explained: ExplainedPixel) -> None:
         """Show the chain of ancestors; the level that was looked at stays."""
@@ -190,20 +181,23 @@ class DeBonetView(ExplanationView):
         index = explained.marked[tile][place]
         if tile == 0:
             self.structure.show_structure(None)
-            self.caption.setText("The coarsest level has no parents.")
+            self.caption.show_parts(("The coarsest level has no parents.", "muted"))
         else:
             self.structure.show_structure(structure_of(explained, each.level, index))
-            self.caption.setText(self._legend(index, each))
-        self.words.setText(summary(explanation, each.level))
+            self._show_legend(index, each)
+        self.words.show_parts((summary(explanation, each.level), "text"))
 
-    def _legend(self, index: int, each: ExplainedLevel) -> str:
-        """Return what is compared, in the colours of the bars."""
+    def _show_legend(self, index: int, each: ExplainedLevel) -> None:
+        """Say what is compared, in the colours of the bars."""
         row, column = each.candidates[index]
         kind = "taken" if index == each.chosen else "not taken"
-        pixel = f'<span style="color:{self._theme.exemplar}"><b>the pixel</b></span>'
-        name = f"candidate {index + 1:,} of {len(each.candidates):,}"
-        other = f'<span style="color:{self._theme.result}"><b>{name}</b></span>'
-        return f"Parents of {pixel} and of {other} ({kind}) at {column}, {row}"
+        self.caption.show_parts(
+            ("Parents of ", "muted"),
+            ("the pixel", "exemplar"),
+            (" and of ", "muted"),
+            (f"candidate {index + 1:,} of {len(each.candidates):,}", "result"),
+            (f" ({kind}) at {column}, {row}", "muted"),
+        )
 
     def _select(self, tile: int, place: int) -> None:
         assert self._explained is not None
