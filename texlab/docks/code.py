@@ -302,6 +302,8 @@ class CodeDock(FramedDock):
         # The rows of v are those of u, beside it.
         rows = {"residual": RESIDUAL_NAMES, "v": [""] * len(OCTAVE_NAMES)}.get(group, OCTAVE_NAMES)
         names = [""] if group == "residual" else ANGLE_NAMES
+        if group in ("u", "v"):
+            names = [name.rstrip("°") for name in names]
         grid.show_cells(places.reshape(shape), texts, rows, names, SEQUENTIAL_TABLE)
         grid.mark_changed(changed.reshape(shape))
         if self._chosen.group == group:
