@@ -9,7 +9,7 @@ SCREEN := -o xvfb_width=1920 -o xvfb_height=1200 -o xvfb_colordepth=24
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
-	@$(PY) tools/run_explorer.py
+	@$(PY) .ci/run_explorer.py
 
 # The last pytest run is the whole suite, so that its summary is the last line.
 test: lint
@@ -38,15 +38,14 @@ wheel: .venv/.ready-run
 
 # The picture in the README.
 screenshot: .venv/.ready-run
-	@mkdir -p docs
-	@$(BIN)/texlab screenshot --out docs/window.png --gallery structured-pebbles
+	@$(BIN)/texlab screenshot --out resources/help/figures/window.png --gallery structured-pebbles
 
-.venv/.ready-%: pyproject.toml tools/setup_env.py
-	@$(PYTHON) tools/setup_env.py $*
+.venv/.ready-%: pyproject.toml .ci/setup_env.py
+	@$(PYTHON) .ci/setup_env.py $*
 
 clean:
 	rm -rf build dist .coverage .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
-	find texlab texlab_core tests tools -name __pycache__ -type d -prune -exec rm -rf {} +
+	find texlab texlab_core tests .ci -name __pycache__ -type d -prune -exec rm -rf {} +
 
 distclean: clean
 	rm -rf .venv

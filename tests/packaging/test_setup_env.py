@@ -13,7 +13,7 @@ import pytest
 if TYPE_CHECKING:
     from types import ModuleType
 
-SCRIPT = Path(__file__).resolve().parents[2] / "tools" / "setup_env.py"
+SCRIPT = Path(__file__).resolve().parents[2] / ".ci" / "setup_env.py"
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="system packages are installed on Linux only")
 
 

@@ -1,6 +1,6 @@
 """Prepare a checkout: system libraries, virtual environment, dependencies.
 
-    python3 tools/setup_env.py run|test|bench
+    python3 .ci/setup_env.py run|test|bench
 
 Standard library only, since nothing else is there yet. As root on Debian and its relatives it installs missing
 system packages; otherwise it prints the one command that does, and exits with 2.
