@@ -174,7 +174,14 @@ class HistogramBars(QWidget):
 
     def show_bars(self, values: NDArray[np.float64], measured: NDArray[np.float64] | None) -> None:
         """Show bars, and lines where the exemplar's are."""
+        same = np.array_equal(values, self._values) and (
+            measured is self._measured
+            or (measured is not None and self._measured is not None and np.array_equal(measured, self._measured))
+        )
         self._values, self._measured = values, measured
+        # While other numbers are dragged, nothing is painted here.
+        if same and self._pressed < 0:
+            return
         if self._pressed < 0:
             both = values if measured is None else np.concatenate([values, measured])
             # The scale stands still while a bar is dragged.
