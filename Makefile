@@ -38,7 +38,7 @@ wheel: .venv/.ready-run
 
 # The picture in the README.
 screenshot: .venv/.ready-run
-	@$(BIN)/texlab screenshot --out resources/help/figures/window.png --gallery structured-pebbles
+	@$(BIN)/texlab screenshot --out resources/help/window.png --gallery structured-pebbles
 
 .venv/.ready-%: pyproject.toml .ci/setup_env.py
 	@$(PYTHON) .ci/setup_env.py $*
