@@ -32,9 +32,13 @@ def _choose_cache_directory() -> None:
     """Send numba's cache to the user's cache folder when the installation is read-only."""
     if "NUMBA_CACHE_DIR" in os.environ or _writable(Path(__file__).parent):
         return
+    import importlib.metadata
+
     import platformdirs
 
-    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba"
+    # By version: an index of another version may name types that are gone, and would not load.
+    version = importlib.metadata.version("texlab")
+    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / version
     if _writable(folder):
         os.environ["NUMBA_CACHE_DIR"] = str(folder)
 
