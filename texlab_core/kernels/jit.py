@@ -32,13 +32,12 @@ def _choose_cache_directory() -> None:
     """Send numba's cache to the user's cache folder when the installation is read-only."""
     if "NUMBA_CACHE_DIR" in os.environ or _writable(Path(__file__).parent):
         return
-    import importlib.metadata
-
     import platformdirs
 
+    from texlab_core.run import versions
+
     # By version: an index of another version may name types that are gone, and would not load.
-    version = importlib.metadata.version("texlab")
-    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / version
+    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / versions()["texlab"]
     if _writable(folder):
         os.environ["NUMBA_CACHE_DIR"] = str(folder)
 
