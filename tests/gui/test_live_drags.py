@@ -1,0 +1,154 @@
+"""Pictures under the finger: patient requests, full size while a control is dragged, docks that rest."""
+
+from __future__ import annotations
+
+import threading
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from dock_scenes import column_of, scene_of
+
+from tests.gui.conftest import drag, handle_point, wait_idle
+from texlab.dock_host import DockHost
+from texlab.docks.base import Dock
+from texlab.jobs import Slots, Worker
+from texlab.scene import Question
+from texlab_core.methods.de_bonet import DeBonetParams
+
+
+class Gate:
+    """A request that runs until it is opened."""
+
+    def __init__(self, value):
+        self.value = value
+        self.started, self.opened = threading.Event(), threading.Event()
+
+    def __call__(self, task):
+        self.started.set()
+        while not self.opened.wait(0.005):
+            if task.should_stop():
+                from texlab_core.errors import Cancelled
+
+                raise Cancelled
+        return self.value
+
+
+@pytest.fixture
+def worker():
+    made = Worker("test")
+    yield made
+    made.close()
+
+
+def test_a_patient_request_lets_the_running_one_finish(worker, qtbot):
+    finished = []
+    worker.finished.connect(lambda value: finished.append((value, worker.behind)))
+    first, second, third = Gate(1), Gate(2), Gate(3)
+    worker.submit(first)
+    assert first.started.wait(5)
+    worker.submit(second, patient=True)
+    worker.submit(third, patient=True)
+    for gate in (first, second, third):
+        gate.opened.set()
+    qtbot.waitUntil(lambda: not worker.behind)
+    # The second one never started: the newest request took its place.
+    assert finished == [(1, True), (3, False)]
+    assert not second.started.is_set()
+
+
+def test_an_impatient_request_stops_what_runs(worker, qtbot):
+    finished = []
+    worker.finished.connect(finished.append)
+    first, second = Gate(1), Gate(2)
+    worker.submit(first)
+    assert first.started.wait(5)
+    worker.submit(second)
+    second.opened.set()
+    qtbot.waitUntil(lambda: bool(finished))
+    assert finished == [2]
+
+
+def test_cancel_forgets_patient_requests_too(worker, qtbot):
+    finished = []
+    worker.finished.connect(finished.append)
+    first, second = Gate(1), Gate(2)
+    worker.submit(first)
+    assert first.started.wait(5)
+    worker.submit(second, patient=True)
+    with qtbot.waitSignal(worker.cancelled):
+        worker.cancel()
+    qtbot.waitUntil(lambda: not worker.busy)
+    assert not worker.behind
+    assert finished == []
+
+
+def test_a_quick_method_is_dragged_at_full_size(open_window, texture, qtbot, monkeypatch):
+    # Quick on any machine, however busy it is.
+    monkeypatch.setattr("texlab.controller.draft_size", lambda size, seconds: None)
+    explorer = open_window(str(texture), [("de-bonet", DeBonetParams())])
+    controller, session = explorer.controller, explorer.session
+    column = session.state.columns[0]
+    seen = []
+
+    def look(scene):
+        shown = scene.columns[0]
+        seen.append((shown.status, shown.draft, shown.result is not None and shown.result.job.size))
+
+    controller.scene_changed.connect(look)
+    slider = explorer.window.parameters.form.knobs["alpha"].slider
+    qtbot.waitUntil(lambda: slider.width() > 40)
+    places = [handle_point(slider, share) for share in (0.2, 0.3, 0.4, 0.5)]
+    drag(qtbot, slider, [handle_point(slider), *places])
+    wait_idle(qtbot, explorer)
+    dragged = [each for each in seen if each[0] == "finished"]
+    assert dragged
+    assert {draft for _, draft, _ in seen} == {False}
+    assert {size for _, _, size in dragged} == {session.state.size}
+    final = controller.column_scene(column.id)
+    assert final.result.job.params == session.state.columns[0].params
+    assert final.frames
+    assert session.undo_text is not None
+    session.undo()
+    assert session.undo_text is None
+    assert session.state.columns[0].params == DeBonetParams()
+
+
+class Counting(Dock):
+    """Counts how often it is asked."""
+
+    name: ClassVar[str] = "counting"
+    title: ClassVar[str] = "Counting"
+    help: ClassVar[str] = ""
+    rest_ms: ClassVar[int] = 200
+
+    def __init__(self):
+        super().__init__()
+        self.shown = []
+
+    def question(self, scene):
+        number = float(scene.columns[0].metrics["number"])
+        return Question((number,), lambda should_stop: number)
+
+    def present(self, answer):
+        self.shown.append(answer)
+
+    def present_nothing(self, reason):
+        raise AssertionError(reason)
+
+
+def test_a_dock_rests_between_answers_and_ends_with_the_newest(qtbot):
+    dock = Counting()
+    qtbot.addWidget(dock)
+    dock.show()
+    qtbot.waitExposed(dock)
+    host = DockHost(dock, Slots(1))
+    image = np.zeros((4, 4, 3), np.float32)
+    for number in range(20):
+        host.show_scene(scene_of(column_of(image, metrics={"number": number})))
+        qtbot.waitUntil(lambda: True)
+    assert host.busy
+    qtbot.waitUntil(lambda: not host.busy)
+    assert dock.shown[-1] == 19
+    assert len(dock.shown) < 20
+    host.close()
