@@ -192,9 +192,8 @@ class DeBonetView(ExplanationView):
         row, column = each.candidates[index]
         kind = "taken" if index == each.chosen else "not taken"
         self.caption.show_parts(
-            ("Parents of ", "muted"),
             ("the pixel", "exemplar"),
-            (" and of ", "muted"),
+            (" and ", "muted"),
             (f"candidate {index + 1:,} of {len(each.candidates):,}", "result"),
             (f" ({kind}) at {column}, {row}", "muted"),
         )
