@@ -171,6 +171,7 @@ def stylesheet(theme: Theme) -> str:
     QLabel[role="error"] {{ color: {theme.error}; }}
     QLabel[role="warning"] {{ color: {theme.warning}; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
+    QDialog#command-palette {{ border: 1px solid {theme.accent}; background: {theme.window}; }}
     QListWidget, QTreeWidget, QScrollArea {{ border: none; }}
     QProgressBar {{ border: none; background: {theme.raised}; border-radius: 2px; }}
     QProgressBar {{ max-height: 4px; min-height: 4px; }}

@@ -67,9 +67,6 @@ class MainWindow(QMainWindow):
         self.message_bar = MessageBar()
         self._middle = QWidget()
         self._middle.setObjectName("middle")
-        # Keys are commands until a field is clicked: the search field must not get them first.
-        self._middle.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self._middle.setFocus()
         self._middle_layout = QVBoxLayout(self._middle)
         self._middle_layout.setContentsMargins(0, 0, 0, 0)
         self._middle_layout.setSpacing(0)
@@ -78,6 +75,9 @@ class MainWindow(QMainWindow):
         self._loading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._middle_layout.addWidget(self._loading, 1)
         self.setCentralWidget(self._middle)
+        # Keys are commands until a field is clicked: the search field must not get them first.
+        self._middle.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self._middle.setFocus()
         self.gallery = GalleryView()
         self.parameters = ParametersView()
         self._add_side("Gallery", self.gallery, Qt.DockWidgetArea.LeftDockWidgetArea, 190)
@@ -108,8 +108,6 @@ class MainWindow(QMainWindow):
         """Put the images into the middle."""
         self._middle_layout.replaceWidget(self._loading, workspace)
         self._loading.deleteLater()
-        if self._middle.hasFocus() or self.focusWidget() is None:
-            workspace.setFocus()
         self._middle_layout.setStretchFactor(workspace, 1)
 
     def add_docks(self, docks: list[Dock]) -> None:

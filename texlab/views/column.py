@@ -73,7 +73,7 @@ class ColumnView(QFrame):
         self.setProperty("chosen", False)
         self.setProperty("failed", False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumWidth(120)
+        self.setMinimumWidth(140)
         self.method_box = ShortBox()
         self.method_box.setObjectName(f"method-{column_id}")
         self.method_box.setAccessibleName("Method of this column")

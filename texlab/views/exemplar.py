@@ -79,7 +79,6 @@ class ExemplarView(QFrame):
         self.scale_box.setSingleStep(0.05)
         self.scale_box.setKeyboardTracking(False)
         self.scale_box.setPrefix("×")
-        self.scale_box.setMaximumWidth(76)
         self.line = StatusLine()
         self.line.setObjectName("exemplar-line")
         self.pane = ImagePane(link, self)
