@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
 from texlab.jobs import Worker
+from texlab.kept_exemplar import has_no_home, keep, kept_path
 from texlab.settings import session_to_json
+from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from texlab.session import Session
+    from texlab.session import Sample, Session
     from texlab.settings import Settings
+    from texlab_core.inputs import ImageInput
+
+log = logging.getLogger(__name__)
 
 REST_MS = 1000
 
@@ -23,6 +29,7 @@ class Autosave(QObject):
         super().__init__(parent)
         self._session = session
         self._settings = settings
+        self._kept: ImageInput | None = None
         self._worker = Worker("autosave", parent=self)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
@@ -36,17 +43,31 @@ class Autosave(QObject):
         self._settings.values["session"] = session_to_json(self._session.state, self._session.selected_id)
 
     def _save(self) -> None:
-        if self._session.state.sample is None:
+        sample = self._session.state.sample
+        if sample is None:
             # The first exemplar is still being read: what was saved before is worth more.
             return
         self.remember()
         text = self._settings.to_json()
-        self._worker.submit(lambda task: self._settings.write(text))
+        self._worker.submit(lambda task: self._write(text, sample), patient=True)
+
+    def _write(self, text: str, sample: Sample) -> None:
+        """Write everything (in the worker's thread, or when that has ended)."""
+        if has_no_home(sample) and sample.source is not self._kept:
+            try:
+                keep(sample.source, kept_path())
+            except InputError as error:
+                log.warning("The exemplar could not be kept: %s", error)
+            self._kept = sample.source
+        self._settings.write(text)
 
     def close(self) -> None:
         """End the thread, then save for the last time."""
         self._rest.stop()
         self._worker.close()
-        if self._session.state.sample is not None:
-            self.remember()
-        self._settings.save()
+        sample = self._session.state.sample
+        if sample is None:
+            self._settings.save()
+            return
+        self.remember()
+        self._write(self._settings.to_json(), sample)

@@ -236,8 +236,14 @@ class Controller(QObject):
         for column_id in list(self._runtimes):
             self.stop_column(column_id)
 
-    def once(self, name: str, request: Request, done: Callable[[Any], None] | None = None) -> None:
-        """Do something once in the background (open, save); a failure becomes one sentence."""
+    def once(
+        self,
+        name: str,
+        request: Request,
+        done: Callable[[Any], None] | None = None,
+        failed: Callable[[], None] | None = None,
+    ) -> None:
+        """Do something once in the background (open, save); a failure becomes one sentence, then ``failed()``."""
         worker = Worker(name, parent=self)
         self._once_workers.add(worker)
 
@@ -252,6 +258,8 @@ class Controller(QObject):
         if done is not None:
             worker.finished.connect(done)
         worker.failed.connect(self.problem)
+        if failed is not None:
+            worker.failed.connect(lambda _: failed())
         worker.idle.connect(end)
         worker.submit(request)
 

@@ -21,7 +21,7 @@ from texlab.docks import dock_classes
 from texlab.editors import register_editors
 from texlab.jobs import Slots, Task, Worker
 from texlab.memory import memory_text
-from texlab.opening import IMAGE_SUFFIXES, Opener, is_document
+from texlab.opening import IMAGE_SUFFIXES, Choice, Opener, is_document, last_exemplar
 from texlab.overlays import Overlays
 from texlab.pictures import describe_pixel, to_picture
 from texlab.preset_manager import PresetManager
@@ -123,28 +123,15 @@ class Explorer(QObject):
             self._warming.submit(lambda task: warm_up(task.should_stop))
 
     def _open_first(self, source: str | None, saved: Any) -> None:
+        choices = [*last_exemplar(saved), Choice(FIRST_TEXTURE, FIRST_CROP, 1.0)]
         if source is not None and is_document(source):
             # A code or a preset goes into a column; the exemplar is the last one.
             self.opener.open(source)
+        elif source is not None and source.startswith("gallery:"):
+            choices.insert(0, Choice(source, FIRST_CROP, 1.0))
         elif source is not None:
-            fresh = source.startswith("gallery:")
-            self.opener.open(source, crop=FIRST_CROP if fresh else None, scale=1.0 if fresh else None)
-            return
-        sample = saved.get("sample") if isinstance(saved, dict) else None
-        if isinstance(sample, dict):
-            name, path = sample.get("name"), sample.get("path")
-            crop, scale = sample.get("crop"), sample.get("scale")
-            numbers = isinstance(crop, list) and len(crop) == 4 and all(isinstance(side, int) for side in crop)
-            box = Crop(*crop) if isinstance(crop, list) and numbers else None
-            factor = float(scale) if isinstance(scale, int | float) and 0 < scale <= 1 else None
-            known = [entry.uri for entry in gallery()]
-            if isinstance(path, str) and Path(path).is_file():
-                self.opener.open(path, crop=box, scale=factor)
-                return
-            if name in known:
-                self.opener.open(str(name), crop=box, scale=factor)
-                return
-        self.opener.open(FIRST_TEXTURE, crop=FIRST_CROP, scale=1.0)
+            choices.insert(0, Choice(source))
+        self.opener.open_first_of(choices)
 
     def close(self) -> None:
         """Remember the session and stop every thread."""
@@ -340,8 +327,10 @@ class Explorer(QObject):
         """Ask for an image, a code or a preset."""
         pattern = " ".join(f"*{suffix}" for suffix in IMAGE_SUFFIXES)
         kinds = f"Images ({pattern});;MSG codes and presets (*.json);;All files (*)"
-        path, _ = QFileDialog.getOpenFileName(self.window, "Open image", "", kinds)
+        folder = self.settings.text("open-folder")
+        path, _ = QFileDialog.getOpenFileName(self.window, "Open image", folder, kinds)
         if path:
+            self.settings.values["open-folder"] = str(Path(path).parent)
             self.opener.open(path)
 
     def paste(self) -> None:
@@ -361,10 +350,17 @@ class Explorer(QObject):
         job = scene.result.job
         name = self._exemplar_name().replace("gallery:", "").replace("/", "-")
         suggested = f"{Path(name).stem}-{job.method}-{job.size[1]}x{job.size[0]}-seed{job.seed}.png"
-        kinds = "PNG with recipe (*.png);;TIFF (*.tif);;JPEG (*.jpg)"
-        path, _ = QFileDialog.getSaveFileName(self.window, "Save result", suggested, kinds)
+        kinds = {"PNG (*.png)": ".png", "TIFF (*.tif)": ".tif", "JPEG (*.jpg)": ".jpg"}
+        suggested = str(Path(self.settings.text("save-folder")) / suggested)
+        path, kind = QFileDialog.getSaveFileName(self.window, "Save result", suggested, ";;".join(kinds))
         if path:
-            self.opener.save(scene.result, path)
+            self.settings.values["save-folder"] = str(Path(path).parent)
+            target = path if Path(path).suffix else path + kinds.get(kind, ".png")
+            if target != path and Path(target).exists():
+                # The dialog has not asked about this one.
+                self.window.message_bar.tell(f"{target} is already there: choose it to replace it.", "problem")
+                return
+            self.opener.save(scene.result, target)
 
     def copy(self, column_id: int) -> None:
         """Put a column's picture on the clipboard."""

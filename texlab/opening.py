@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from texlab.kept_exemplar import Kept, kept_path, load
 from texlab.session import Column, Sample, Session, State
 from texlab_core.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from texlab.controller import Controller
     from texlab.jobs import Task
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from texlab_core.steps import Result
 
 COMFORTABLE_SIDE = 256
+SMALLEST_SIDE = 2
 DOCUMENT_SUFFIX = ".json"
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
 
@@ -32,6 +34,15 @@ class Opened:
     image: ImageInput
     path: str | None
     job: Job | None = None
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An exemplar to open: where it is, and how much of it; without a scale it is taken as a fresh image is."""
+
+    source: str | bytes | Kept
+    crop: Crop | None = None
+    scale: float | None = None
 
 
 @dataclass(frozen=True)
@@ -70,8 +81,8 @@ def open_document(path: str) -> Document:
     return Document(path)
 
 
-def open_source(source: str | bytes) -> Opened:
-    """Read an image or a saved result (a path, gallery:NAME, or the bytes of a file); runs in a thread.
+def open_source(source: str | bytes | Kept) -> Opened:
+    """Read an image or a saved result (a path, gallery:NAME, the bytes of a file, or what was kept); in a thread.
 
     Raises
     ------
@@ -82,6 +93,8 @@ def open_source(source: str | bytes) -> Opened:
     from texlab_core.images import as_exemplar
     from texlab_core.recipe_reading import read_recipe
 
+    if isinstance(source, Kept):
+        return Opened(load(source), None)
     path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
     if path is not None or isinstance(source, bytes):
         with contextlib.suppress(NoRecipeError):
@@ -100,6 +113,42 @@ def sample_of(image: ImageInput, path: str | None) -> Sample:
     side = max(image.size)
     scale = 1.0 if side <= COMFORTABLE_SIDE else round(COMFORTABLE_SIDE / side, 3)
     return Sample(image, scale, None, path)
+
+
+def fitting(sample: Sample) -> Sample:
+    """Return the sample, without its crop and scale where the file has become too small for them."""
+    from texlab_core.images import scaled_size
+
+    height, width = scaled_size(*sample.source.size, sample.scale)
+    if min(height, width) < SMALLEST_SIDE:
+        return dataclasses.replace(sample, scale=1.0, crop=None)
+    crop = sample.crop
+    if crop is None or (
+        min(crop.top, crop.left) >= 0
+        and min(crop.height, crop.width) >= SMALLEST_SIDE
+        and crop.top + crop.height <= height
+        and crop.left + crop.width <= width
+    ):
+        return sample
+    return dataclasses.replace(sample, crop=None)
+
+
+def last_exemplar(saved: Any) -> list[Choice]:
+    """Return where the exemplar of a saved session may be (nowhere when that is missing or damaged)."""
+    from texlab_core.gallery import gallery
+
+    sample = saved.get("sample") if isinstance(saved, dict) else None
+    if not isinstance(sample, dict):
+        return []
+    name, path, crop, scale = (sample.get(key) for key in ("name", "path", "crop", "scale"))
+    whole = isinstance(crop, list) and len(crop) == 4 and all(type(side) is int for side in crop)
+    box = Crop(*crop) if isinstance(crop, list) and whole else None
+    factor = float(scale) if isinstance(scale, int | float) and 0 < scale <= 1 else None
+    if isinstance(path, str):
+        return [Choice(path, box, factor)]
+    if name in [entry.uri for entry in gallery()]:
+        return [Choice(str(name), box, factor)]
+    return [Choice(Kept(kept_path(), str(name)), box, factor)] if kept_path().is_file() else []
 
 
 def with_crop_of(sample: Sample, before: Sample | None) -> Sample:
@@ -160,22 +209,31 @@ class Opener:
         self._import_preset = import_preset
         self._newest = 0
 
-    def open(self, source: str | bytes, *, crop: Crop | None = None, scale: float | None = None) -> None:
+    def open(self, source: str | bytes) -> None:
         """Open a path, gallery:NAME or the bytes of a file; the newest of several images wins."""
         if isinstance(source, str) and is_document(source):
             self._open_document(source)
-            return
+        else:
+            self.open_first_of([Choice(source)])
+
+    def open_first_of(self, choices: Sequence[Choice]) -> None:
+        """Open the first of these images that can be read; what is wrong with the others is said."""
+        choice, others = choices[0], choices[1:]
         self._newest += 1
         number = self._newest
 
         def work(task: Task) -> Opened:
-            return open_source(source)
+            return open_source(choice.source)
 
         def done(opened: Opened) -> None:
             if number == self._newest:
-                self._take(opened, crop, scale)
+                self._take(opened, choice)
 
-        self._controller.once("open", work, done)
+        def failed() -> None:
+            if others and number == self._newest:
+                self.open_first_of(others)
+
+        self._controller.once("open", work, done, failed)
 
     def _open_document(self, path: str) -> None:
         def work(task: Task) -> Document:
@@ -192,27 +250,31 @@ class Opener:
         self._session.select(column_id)
         self._controller.said.emit(f"MSG works from the code {document.code.name}, not from the exemplar.")
 
-    def _take(self, opened: Opened, crop: Crop | None, scale: float | None) -> None:
+    def _take(self, opened: Opened, choice: Choice) -> None:
+        first = self._session.state.sample is None
         if opened.job is not None:
             state, column_id = restored(self._session.state, opened)
             self._session.apply(state, "restore a result")
             self._session.select(column_id)
+            self._forget_start(first)
             self._controller.said.emit("The saved result's exemplar, parameters, size and seed were restored.")
             return
         if opened.path is not None:
             self._settings.add_recent(opened.path)
         sample = sample_of(opened.image, opened.path)
-        if scale is not None:
-            sample = dataclasses.replace(sample, scale=scale, crop=crop)
+        if choice.scale is not None:
+            sample = fitting(dataclasses.replace(sample, scale=choice.scale, crop=choice.crop))
         else:
             sample = with_crop_of(sample, self._session.state.sample)
-        first = self._session.state.sample is None
         self._session.set_sample(sample)
+        self._forget_start(first)
+        if opened.image.notes:
+            self._controller.said.emit(" ".join(opened.image.notes))
+
+    def _forget_start(self, first: bool) -> None:
         if first:
             # Nobody wants to undo to an empty window.
             self._session.reset_history()
-        if opened.image.notes:
-            self._controller.said.emit(" ".join(opened.image.notes))
 
     def use_as_exemplar(self, result: Result) -> None:
         """Make a result the exemplar."""
