@@ -34,6 +34,8 @@ from texlab.window import source_of
 from texlab_core.comparison import FIG_8, FIRST_SIGHT
 from texlab_core.gallery import gallery
 from texlab_core.inputs import Crop
+from texlab_core.multiresolution.thresholds import ThresholdTable
+from texlab_core.params import describe
 from texlab_core.registry import methods
 from texlab_core.run import MAX_SEED, versions
 from texlab_core.warming import warm_up
@@ -244,7 +246,10 @@ class Explorer(QObject):
         return {name: _without_argument(call) if name != "tile" else call for name, call in handlers.items()}
 
     def _arrange(self, layout: str) -> None:
-        self.window.arrange(layout)
+        column = self.session.selected_column
+        fields = describe(type(column.params)) if column is not None else ()
+        table = any(field.type is ThresholdTable for field in fields)
+        self.window.arrange(layout, tuning="thresholds" if table else "histograms")
         self.workspace.link.fit()
 
     def _connect_column(self, view: ColumnView) -> None:

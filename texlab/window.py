@@ -282,8 +282,8 @@ class MainWindow(QMainWindow):
             action.triggered.connect(partial(chosen, path))
             self.recent_menu.addAction(action)
 
-    def arrange(self, layout: str) -> None:
-        """Arrange the panels: ``explore``, ``teach`` or ``tune``."""
+    def arrange(self, layout: str, tuning: str = "histograms") -> None:
+        """Arrange the panels: ``explore``, ``teach`` or ``tune``; ``tuning`` is the tab in front for the last."""
         gallery, parameters = self.docks["gallery"], self.docks["parameters"]
         gallery.setVisible(layout == "explore")
         parameters.setVisible(layout != "teach")
@@ -292,7 +292,7 @@ class MainWindow(QMainWindow):
         for dock in tabs:
             dock.show()
         if tabs:
-            front = {"explore": "pyramid", "teach": "pyramid", "tune": "histograms"}[layout]
+            front = {"explore": "pyramid", "teach": "pyramid", "tune": tuning}[layout]
             self.docks.get(front, tabs[0]).raise_()
             height = {"explore": 0.33, "teach": 0.45, "tune": 0.3}[layout]
             self.resizeDocks([tabs[0]], [round(self.height() * height)], Qt.Orientation.Vertical)

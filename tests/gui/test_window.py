@@ -473,3 +473,17 @@ def test_efros_leung_goes_on_after_a_stop_and_after_enlarging(
     grown = result_image(explorer, column.id)
     assert grown.shape == (170, 170, 3)
     assert np.array_equal(grown[10:160, 10:160], whole)
+
+
+def test_tuning_brings_the_threshold_table_to_the_front(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    explorer = open_window(str(texture), [hb(), ("de-bonet", texlab_params("de-bonet"))])
+    first, second = ids(explorer)
+    for column_id, front in ((second, "thresholds"), (first, "histograms")):
+        explorer.session.select(column_id)
+        explorer.window.actions_by_name["layout-tune"].trigger()
+        shown = explorer.window.docks[front].widget()
+        qtbot.waitUntil(lambda shown=shown: not shown.visibleRegion().isEmpty(), timeout=5_000)
+    explorer.window.actions_by_name["layout-explore"].trigger()
+    wait_idle(qtbot, explorer)
