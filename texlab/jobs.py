@@ -8,7 +8,10 @@ cancelled.
 
 from __future__ import annotations
 
+import contextlib
 import logging
+import os
+import sys
 import threading
 import time
 from collections import deque
@@ -23,6 +26,7 @@ from texlab_core.errors import Cancelled, InputError
 log = logging.getLogger(__name__)
 
 PROGRESS_INTERVAL_S = 1 / 60
+NICENESS = 5
 
 
 class Slots:
@@ -193,6 +197,7 @@ class Worker(QObject):
     # The thread's side.
 
     def _work(self) -> None:
+        _give_way()
         while True:
             with self._mail:
                 while self._request is None and not self._closing:
@@ -265,3 +270,10 @@ class Worker(QObject):
             waiting, self._progress = self._progress, None
         if waiting is not None and waiting[0] >= self._oldest and not self._closing:
             self.progressed.emit(waiting[1])
+
+
+def _give_way() -> None:
+    """Let the window's thread go first, where a thread can say so (Linux)."""
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
