@@ -1,0 +1,170 @@
+"""Background workers: the newest request wins, every request ends once, nothing stale arrives."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from texlab.jobs import Slots, Task, Worker
+from texlab_core.errors import Cancelled, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+@pytest.fixture
+def make_worker(qapp: Any) -> Iterator[Callable[..., tuple[Worker, list[tuple[str, Any]]]]]:
+    """Return a function that makes a worker and a record of everything that it tells."""
+    made: list[Worker] = []
+
+    def make(slots: Slots | None = None) -> tuple[Worker, list[tuple[str, Any]]]:
+        worker = Worker(f"test-{len(made)}", slots)
+        made.append(worker)
+        told: list[tuple[str, Any]] = []
+        worker.progressed.connect(lambda value: told.append(("progressed", value)))
+        worker.finished.connect(lambda value: told.append(("finished", value)))
+        worker.failed.connect(lambda value: told.append(("failed", value)))
+        worker.cancelled.connect(lambda: told.append(("cancelled", None)))
+        return worker, told
+
+    yield make
+    for worker in made:
+        worker.close()
+        worker.deleteLater()
+
+
+def until_stopped(started: threading.Event) -> Callable[[Task], None]:
+    def work(task: Task) -> None:
+        started.set()
+        while not task.should_stop():
+            threading.Event().wait(0.001)
+        raise Cancelled
+
+    return work
+
+
+def test_the_newest_of_many_requests_is_the_only_one_told(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    started = threading.Event()
+    worker.submit(until_stopped(started))
+    assert started.wait(10)
+    ran = []
+    for number in range(50):
+        worker.submit(lambda task, number=number: ran.append(number) or number)
+    qtbot.waitUntil(lambda: ("finished", 49) in told, timeout=10_000)
+    assert told == [("finished", 49)]
+    # Requests that were replaced while they waited never ran.
+    assert ran[-1] == 49
+    assert worker.generation == 51
+
+
+def test_a_result_that_was_replaced_on_its_way_is_dropped(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    done = threading.Event()
+
+    def first(task: Task) -> str:
+        done.set()
+        return "first"
+
+    worker.submit(first)
+    assert done.wait(10)
+    # The event of the first result waits in the queue of this thread, which has not looked yet.
+    worker.submit(lambda task: "second")
+    qtbot.waitUntil(lambda: ("finished", "second") in told, timeout=10_000)
+    assert told == [("finished", "second")]
+
+
+def test_progress_is_the_newest_and_comes_before_the_end(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+
+    def work(task: Task) -> str:
+        for number in range(1000):
+            task.progress(number)
+        return "end"
+
+    worker.submit(work)
+    qtbot.waitUntil(lambda: ("finished", "end") in told, timeout=10_000)
+    numbers = [value for kind, value in told if kind == "progressed"]
+    assert numbers == sorted(numbers)
+    assert numbers[-1] == 999
+    assert told[-1] == ("finished", "end")
+
+
+@pytest.mark.parametrize(
+    ("error", "sentence"),
+    [
+        (InputError("size: must be at least 1, got 0."), "size: must be at least 1, got 0."),
+        (OSError("the disk is full"), "the disk is full"),
+        (MemoryError(), "There is not enough memory"),
+        (KeyError("inner"), "KeyError: 'inner'. The log has the details."),
+    ],
+)
+def test_a_failure_is_one_sentence_and_the_worker_lives_on(
+    qtbot: Any, make_worker: Any, error: Exception, sentence: str
+) -> None:
+    worker, told = make_worker()
+
+    def fail(task: Task) -> None:
+        raise error
+
+    worker.submit(fail)
+    qtbot.waitUntil(lambda: bool(told), timeout=10_000)
+    assert told[0][0] == "failed"
+    assert sentence in told[0][1]
+    assert "Traceback" not in told[0][1]
+    worker.submit(lambda task: 7)
+    qtbot.waitUntil(lambda: ("finished", 7) in told, timeout=10_000)
+    assert len(told) == 2
+
+
+def test_a_cancel_ends_once_and_frees_the_worker(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    started = threading.Event()
+    worker.submit(until_stopped(started))
+    assert started.wait(10)
+    worker.cancel()
+    qtbot.waitUntil(lambda: not worker.busy, timeout=10_000)
+    worker.cancel()
+    worker.submit(lambda task: 1)
+    qtbot.waitUntil(lambda: ("finished", 1) in told, timeout=10_000)
+    assert told == [("cancelled", None), ("finished", 1)]
+
+
+def test_no_more_run_than_there_are_places(qtbot: Any, make_worker: Any) -> None:
+    slots = Slots(1)
+    (first, first_told), (second, second_told) = make_worker(slots), make_worker(slots)
+    started = threading.Event()
+    first.submit(until_stopped(started))
+    assert started.wait(10)
+    ran = threading.Event()
+    second.submit(lambda task: ran.set())
+    assert not ran.wait(0.05)
+    first.cancel()
+    qtbot.waitUntil(lambda: bool(second_told), timeout=10_000)
+    assert ran.is_set()
+    assert first_told == [("cancelled", None)]
+
+
+def test_one_that_waits_for_a_place_can_be_cancelled(qtbot: Any, make_worker: Any) -> None:
+    slots = Slots(1)
+    (first, _), (second, told) = make_worker(slots), make_worker(slots)
+    started = threading.Event()
+    first.submit(until_stopped(started))
+    assert started.wait(10)
+    second.submit(lambda task: "never")
+    second.cancel()
+    qtbot.waitUntil(lambda: not second.busy, timeout=10_000)
+    assert told == [("cancelled", None)]
+    first.cancel()
+
+
+def test_closing_stops_what_runs(make_worker: Any) -> None:
+    worker, told = make_worker()
+    started = threading.Event()
+    worker.submit(until_stopped(started))
+    assert started.wait(10)
+    worker.close()
+    assert not any(thread.name == "texlab-test-0" for thread in threading.enumerate())
+    assert told == []
