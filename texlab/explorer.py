@@ -100,6 +100,9 @@ class Explorer(QObject):
         self._connect()
         self._fill_gallery()
         self.crash.install()
+        if settings.problem:
+            log.warning(settings.problem)
+            window.message_bar.tell(settings.problem, "problem")
         self._memory.start()
 
     # Start.
@@ -444,9 +447,10 @@ class Explorer(QObject):
         self.workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
         self.window.actions_by_name["crop"].setChecked(sample.crop is not None)
         if name != self._shown_exemplar:
+            if self._shown_exemplar:
+                # What was said was about the exemplar before.
+                self.window.message_bar.hide()
             self._shown_exemplar = name
-            # What was said was about the exemplar before.
-            self.window.message_bar.hide()
             self.window.gallery.mark(name)
             self.window.setWindowTitle(f"{name.removeprefix('gallery:')} - TexLab")
             self.window.show_recent(self.settings.recent, lambda path, _=False: self.opener.open(path))

@@ -29,14 +29,26 @@ class Settings:
     def __init__(self) -> None:
         self._path = config_dir() / "settings.json"
         self.values: dict[str, Any] = {}
+        self.problem = ""
         try:
             loaded = json.loads(self._path.read_text(encoding="utf-8"))
-            if isinstance(loaded, dict):
-                self.values = loaded
+            if not isinstance(loaded, dict):
+                raise ValueError("it is no object")
+            self.values = loaded
         except FileNotFoundError:
             pass
-        except (OSError, ValueError, RecursionError) as error:
-            log.warning("The settings could not be read and are left aside: %s", error)
+        except OSError as error:
+            self.problem = f"The settings could not be read ({error.strerror}); the defaults hold."
+        except (ValueError, RecursionError):
+            self._put_aside()
+
+    def _put_aside(self) -> None:
+        broken = self._path.with_suffix(".broken.json")
+        self.problem = f"The settings are damaged; the defaults hold. The file was kept as {broken}."
+        try:
+            self._path.replace(broken)
+        except OSError:
+            self.problem = f"The settings in {self._path} are damaged; the defaults hold."
 
     def text(self, name: str, default: str = "") -> str:
         """Return a text, or the default."""

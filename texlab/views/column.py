@@ -113,7 +113,10 @@ class ColumnView(QFrame):
         for button in (self.run_button, self.stop_button, self.menu_button):
             buttons.addWidget(button)
         # The row is as high as that of the exemplar.
-        buttons.addWidget(strut(QDoubleSpinBox()))
+        crop = QToolButton()
+        crop.setText("Crop")
+        for model in (QDoubleSpinBox(), crop):
+            buttons.addWidget(strut(model))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.setSpacing(3)
