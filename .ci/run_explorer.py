@@ -23,7 +23,8 @@ def main() -> int:
     failed = texlab(["screenshot", "--out", str(window)])
     if failed:
         return failed
-    failed = texlab(["compare", SAMPLE, "--out", str(sheet)])
+    more = ["--crop", "128x128+16+16", "--size", "256x256"]
+    failed = texlab(["compare", SAMPLE, *more, "--out", str(sheet)])
     if failed:
         return failed
     print(
