@@ -218,5 +218,5 @@ def oriented(values: NDArray[Any], orientation: int, notes: list[str]) -> NDArra
 
 
 def display_name(path: str | os.PathLike[str]) -> str:
-    """Return the last part of a path, on one line."""
-    return " ".join(os.path.basename(os.fspath(path)).split()) or os.fspath(path)
+    """Return the last part of a path."""
+    return os.path.basename(os.fspath(path)) or os.fspath(path)

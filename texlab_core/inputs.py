@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.params import frozen_mapping
+from texlab_core.wording import printable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,6 +72,9 @@ class ImageInput:
     origin: Origin | None = None
     notes: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", printable(self.name))
+
     @property
     def size(self) -> tuple[int, int]:
         """Height and width."""
@@ -92,6 +96,7 @@ class DataInput:
 
     def __post_init__(self) -> None:
         text = json.dumps(self.data, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        object.__setattr__(self, "name", printable(self.name))
         object.__setattr__(self, "sha256", hashlib.sha256(text.encode()).hexdigest())
 
 
@@ -108,6 +113,7 @@ class ArraysInput:
         for key in sorted(self.arrays):
             copies[key] = np.array(self.arrays[key], order="C", copy=True)
             copies[key].flags.writeable = False
+        object.__setattr__(self, "name", printable(self.name))
         object.__setattr__(self, "arrays", frozen_mapping(copies))
         object.__setattr__(self, "sha256", hash_arrays(copies))
 
