@@ -38,12 +38,31 @@ def write_image(
     bits: Bits = 8,
     text: Mapping[str, str] | None = None,
 ) -> None:
-    """Write an image; the suffix of the path chooses the format.
+    """Write an image; the suffix of the path chooses the format. See :func:`encode_image`.
+
+    Raises
+    ------
+    ImageError
+        When the format is unknown or cannot hold what is asked, or the values are not finite.
+    InputError
+        When the file cannot be written; what was there before stays as it was.
+    """
+    write_whole(path, encode_image(path, pixels, bits=bits, text=text))
+
+
+def encode_image(
+    path: str | os.PathLike[str],
+    pixels: NDArray[np.floating[Any]],
+    *,
+    bits: Bits = 8,
+    text: Mapping[str, str] | None = None,
+) -> bytes:
+    """Return the bytes of an image file.
 
     Parameters
     ----------
     path
-        Ends in .png, .tif, .tiff, .jpg or .jpeg.
+        Ends in .png, .tif, .tiff, .jpg or .jpeg, which chooses the format.
     pixels
         (H, W) or (H, W, 1 | 3) floats in [0, 1]; integers of a file are rounded to the nearest, and values outside
         are clipped. Floats are written as float32, as they are.
@@ -56,8 +75,6 @@ def write_image(
     ------
     ImageError
         When the format is unknown or cannot hold what is asked, or the values are not finite.
-    InputError
-        When the file cannot be written; what was there before stays as it was.
     """
     suffix = check_format(path, bits)
     name = os.fspath(path)
@@ -72,16 +89,14 @@ def write_image(
             f"{name}: an image to write is (H, W), (H, W, 1) or (H, W, 3) of floats, got {image.shape}."
         )
     if not np.isfinite(image).all():
-        raise ImageError(f"{name}: the image has values that are not finite, and was not written.")
+        raise ImageError(f"{name}: the image has values that are not finite, and cannot be written.")
     image = image[..., 0] if image.shape[2:] == (1,) else image
     values = image.astype(np.float32) if bits == "float" else quantize(image, 2**bits - 1)
     if suffix == ".png":
-        data = encode_png(values, text)
-    elif suffix in (".tif", ".tiff"):
-        data = _encode_tiff(values, text)
-    else:
-        data = _encode_jpeg(values, text)
-    write_whole(path, data)
+        return encode_png(values, text)
+    if suffix in (".tif", ".tiff"):
+        return _encode_tiff(values, text)
+    return _encode_jpeg(values, text)
 
 
 def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
@@ -93,6 +108,8 @@ def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
         When no image can be written under this name, or not with these bits.
     """
     suffix = Path(path).suffix.lower()
+    if not os.fspath(path):
+        raise ImageError("The name of the file to write is empty.")
     if suffix not in _BITS:
         raise ImageError(
             f"{os.fspath(path)}: images are written as {', '.join(WRITABLE_SUFFIXES)}, got {suffix!r}."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,12 +13,12 @@ import numpy as np
 
 from texlab_core import strict_json
 from texlab_core.errors import InputError
-from texlab_core.files import write_whole
+from texlab_core.files import write_together
 from texlab_core.image_writing import encode_png
 from texlab_core.inputs import ImageInput
 
 if TYPE_CHECKING:
-    import os
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
@@ -26,13 +27,24 @@ if TYPE_CHECKING:
 INDEX = "index.json"
 
 
-def save_maps(result: Result, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+def save_maps(
+    result: Result, folder: str | os.PathLike[str], *, spare: Iterable[str | os.PathLike[str]] = ()
+) -> tuple[Path, ...]:
     """Save the maps and curves of a result.
 
     Every map becomes NAME.npy, its exact data, and NAME.png, a picture of it: source coordinates as red (row) and
     green (column), counts and scalars in the colour map viridis from the least to the greatest value, labels in
     colours that are easy to tell apart, and black where there is nothing. Every curve becomes NAME.csv.
     ``index.json`` has titles, units and ranges.
+
+    Parameters
+    ----------
+    result
+        What was made.
+    folder
+        Made if need be.
+    spare
+        Files that no map may overwrite: the result's image, the exemplar.
 
     Returns
     -------
@@ -42,7 +54,7 @@ def save_maps(result: Result, folder: str | os.PathLike[str]) -> tuple[Path, ...
     Raises
     ------
     InputError
-        When one cannot be written.
+        When one cannot be written, or would overwrite a spared one; then none is.
     """
     target = Path(folder)
     try:
@@ -62,9 +74,16 @@ def save_maps(result: Result, folder: str | os.PathLike[str]) -> tuple[Path, ...
         contents[f"{stem}.csv"] = _csv(curve)
         index["curves"][name] = {"title": curve.title, "file": f"{stem}.csv"}
     contents[INDEX] = strict_json.dumps(index).encode()
-    for file, data in contents.items():
-        write_whole(target / file, data)
-    return tuple(target / file for file in contents)
+    files = {target / file: data for file, data in contents.items()}
+    for file in files:
+        if any(_same_file(file, each) for each in spare):
+            raise InputError(f"{file} would be overwritten by a map; choose another folder for the maps.")
+    write_together(files)
+    return tuple(files)
+
+
+def _same_file(one: Path, other: str | os.PathLike[str]) -> bool:
+    return os.path.realpath(one) == os.path.realpath(other)
 
 
 def picture(each: Map, extent: tuple[int, int] | None = None) -> NDArray[np.uint8]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import math
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.files import write_whole
-from texlab_core.image_writing import check_format, write_image
+from texlab_core.files import write_together
+from texlab_core.image_writing import check_format, encode_image, write_image
 from texlab_core.inputs import ImageInput
 from texlab_core.map_files import save_maps
 from texlab_core.recipe_reading import KEY, read_recipe, sidecar
@@ -48,8 +49,12 @@ def save_result(result: Result, path: str | os.PathLike[str], *, bits: Bits = 8)
     suffix = check_format(path, bits)
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
     if suffix in (".jpg", ".jpeg"):
-        write_whole(sidecar(path), recipe.encode())
-        write_image(path, result.image, bits=bits)
+        write_together(
+            {
+                sidecar(path): recipe.encode(),
+                Path(path): encode_image(path, result.image, bits=bits),
+            }
+        )
     else:
         write_image(path, result.image, bits=bits, text={KEY: recipe})
 

@@ -92,7 +92,7 @@ def test_jpeg_is_close(tmp_path):
         ("a.png", NOISE, {"bits": "float"}, "a.png: the bits of a .png file must be 8 or 16, got 'float'."),
         ("a.jpg", NOISE, {"bits": 16}, "a.jpg: the bits of a .jpg file must be 8, got 16."),
         ("a.tif", NOISE, {"bits": 12}, "a.tif: the bits of a .tif file must be 8 or 16 or float, got 12."),
-        ("a.png", NOISE * np.nan, {}, "a.png: the image has values that are not finite, and was not written."),
+        ("a.png", NOISE * np.nan, {}, "a.png: the image has values that are not finite, and cannot be written."),
         (
             "a.png",
             NOISE[..., :2],
