@@ -16,6 +16,7 @@ from texlab_core.png_text import SIGNATURE, read_text
 from texlab_core.recipes import VERSION, Recipe, RecipeInput
 from texlab_core.registry import Method, find_method
 from texlab_core.run import check_seed, check_size
+from texlab_core.wording import sentence_case
 
 if TYPE_CHECKING:
     import os
@@ -81,7 +82,7 @@ def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
     except ValueError as error:
         raise RecipeError(f"The recipe of {name} {error}.") from error
     if found is None:
-        raise NoRecipeError(f"{name[:1].upper()}{name[1:]} holds no recipe; only results that TexLab saved do.")
+        raise NoRecipeError(f"{sentence_case(name)} holds no recipe; only results that TexLab saved do.")
     return found
 
 
@@ -107,7 +108,7 @@ def _parse(text: str | bytes, name: str) -> Recipe:
     try:
         return _recipe(data)
     except InputError as error:
-        raise RecipeError(f"{what[:1].upper()}{what[1:]} is not usable: {error}") from error
+        raise RecipeError(f"{sentence_case(what)} is not usable: {error}") from error
 
 
 def _recipe(data: Any) -> Recipe:
@@ -138,7 +139,8 @@ def _get(data: dict[str, Any], key: str, kind: type[Any]) -> Any:
 
 def _versions(data: Any) -> Mapping[str, str]:
     usable = isinstance(data, dict) and len(data) <= _MAX_VERSIONS
-    if not usable or not all(isinstance(each, str) and len(each) <= 100 for each in data.values()):
+    texts = [*data, *data.values()] if usable else []
+    if not usable or not all(isinstance(each, str) and len(each) <= 100 and each.isprintable() for each in texts):
         raise RecipeError("versions must be a few texts by name.")
     return frozen_mapping(data)
 

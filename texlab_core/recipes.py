@@ -168,7 +168,8 @@ class Recipe:
         ----------
         exemplar
             Used instead of the embedded one, and needed when there is none. It must be the image of the recipe: as
-            it was used, or the source that the recipe scales and crops.
+            it was used, or the source that the recipe scales and crops. It also stands in for missing inputs with
+            its hash.
         given
             Other images, by role, in the same way.
         force
@@ -185,10 +186,13 @@ class Recipe:
         for role in images:
             if role not in self.inputs or self.inputs[role].kind != "image":
                 raise RecipeError(f"The recipe has no image called {role}.")
-        inputs = {
-            role: each.match(images[role], force=force) if role in images else each.restore(force=force)
-            for role, each in self.inputs.items()
-        }
+        found = {role: self.inputs[role].match(image, force=force) for role, image in images.items()}
+        # An image that is grown outward is its own exemplar: one may stand in for several inputs.
+        same = {self.inputs[role].sha256: image for role, image in found.items()}
+        inputs: dict[str, Input] = {}
+        for role, each in self.inputs.items():
+            stand_in = found.get(role) or (None if each.is_embedded else same.get(each.sha256))
+            inputs[role] = each.restore(force=force) if stand_in is None else stand_in
         try:
             return Job(method=self.method, inputs=inputs, params=self.params, size=self.size, seed=self.seed)
         except InputError as error:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections import Counter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from texlab_core.errors import InputError
+from texlab_core.wording import sentence_case
 
 if TYPE_CHECKING:
     import os
@@ -50,7 +52,7 @@ def loads(
     """
 
     def refuse(reason: str) -> NoReturn:
-        raise error(f"{_sentence_case(what)} {reason}.") from None
+        raise error(f"{sentence_case(what)} {reason}.") from None
 
     size = len(source) if isinstance(source, bytes) else len(source.encode("utf-8", "surrogatepass"))
     if size > max_bytes:
@@ -102,9 +104,9 @@ def load(
             source = file.read(max_bytes + 1)
     except (OSError, ValueError) as bad:
         reason = getattr(bad, "strerror", None) or str(bad)
-        raise error(f"{_sentence_case(name)} cannot be read ({reason}).") from bad
+        raise error(f"{sentence_case(name)} cannot be read ({reason}).") from bad
     if len(source) > max_bytes:
-        raise error(f"{_sentence_case(name)} is longer than {_megabytes(max_bytes)}, the most that is read.")
+        raise error(f"{sentence_case(name)} is longer than {_megabytes(max_bytes)}, the most that is read.")
     return loads(source, what=name, max_bytes=max_bytes, max_depth=max_depth, error=error)
 
 
@@ -138,8 +140,7 @@ def _depth(text: str) -> int:
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
-        keys = [key for key, _ in pairs]
-        repeated = next(key for key in keys if keys.count(key) > 1)
+        repeated = Counter(key for key, _ in pairs).most_common(1)[0][0]
         raise _Refused(f"has the key {shorten(repeated)} twice in one object")
     return found
 
@@ -169,7 +170,3 @@ def shorten(given: object) -> str:
 
 def _megabytes(count: int) -> str:
     return f"{count} bytes" if count < 10_000 else f"{count / 2**20:.3g} MB"
-
-
-def _sentence_case(name: str) -> str:
-    return f"T{name[1:]}" if name.startswith("the ") else name

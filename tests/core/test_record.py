@@ -277,6 +277,21 @@ def test_a_given_exemplar_replaces_the_embedded_one_only_when_it_is_the_same():
         recipe.job("missing.png")
 
 
+def test_one_image_stands_in_for_every_missing_input_with_its_hash():
+    data = recipe_data()
+    data["inputs"]["mask"] = dict(data["inputs"]["exemplar"])
+    for each in data["inputs"].values():
+        del each["source"]
+    recipe = read(data)
+    assert {each.role for each in recipe.missing} == {"exemplar", "mask"}
+    same = as_exemplar(levels(), name="copy.png")
+    for job in (recipe.job(same), recipe.job(given={"mask": same})):
+        assert job.inputs["exemplar"] is job.inputs["mask"] is same
+        assert list(job.inputs) == ["exemplar", "mask"]
+    forced = as_exemplar(noise(), name="other.png")
+    assert recipe.job(forced, force=True).inputs["mask"] is forced
+
+
 def test_a_crop_that_does_not_fit_the_given_image_is_one_sentence():
     exemplar = as_exemplar(levels(), name="wall.png", crop=Crop(5, 5, 10, 10))
     recipe = read(recipe_json(result_of(exemplar)))
@@ -335,6 +350,8 @@ HOSTILE = {
     "a seed of another type": lambda: recipe_data(seed="5"),
     "versions of another type": lambda: recipe_data(versions=["numpy"]),
     "versions of numbers": lambda: recipe_data(versions={"numpy": 2}),
+    "versions that clear the screen": lambda: recipe_data(versions={"numpy": "\x1b[2J"}),
+    "a library that clears the screen": lambda: recipe_data(versions={"\x1b[2J": "1"}),
     "inputs of another type": lambda: recipe_data(inputs=[]),
     "no inputs": lambda: recipe_data(inputs={}),
     "an unknown input": lambda: recipe_data(inputs={"start": {}}),

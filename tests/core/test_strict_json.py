@@ -80,6 +80,13 @@ def test_what_is_refused_says_why(source, says):
     assert len(message) < 160
 
 
+def test_a_key_repeated_among_very_many_is_found_at_once():
+    # Counting each key among all the others would take hours.
+    source = "{" + ",".join(f'"{key}":0' for key in range(400_000)) + ',"399999":1}'
+    with pytest.raises(RecipeError, match="has the key '399999' twice"):
+        strict_json.loads(source, max_bytes=2**25, error=RecipeError)
+
+
 def test_size_counts_bytes_not_characters():
     text = json.dumps("ä" * 100, ensure_ascii=False)
     assert strict_json.loads(text, max_bytes=202) == "ä" * 100
