@@ -82,13 +82,17 @@ def _load(source: Source, name: str | None) -> tuple[Decoded, str]:
         return read_image(entry.read(), entry.uri), name or entry.uri
     if isinstance(source, str | os.PathLike):
         shown = os.fspath(source)
+        if not shown:
+            raise ImageError("The name of the image is empty.")
         return read_image(Path(source), shown), name or display_name(shown)
     if isinstance(source, bytes | bytearray | memoryview):
         name = name or "image"
         return read_image(bytes(source), name), name
     if isinstance(source, np.ndarray):
         name = name or "array"
-        return _from_array(source, name), name
+        # Without the rules of a subclass, in this machine's order of bytes.
+        plain = np.asarray(source)
+        return _from_array(plain.astype(plain.dtype.newbyteorder("="), copy=False), name), name
     raise ImageError(
         "An image must be an array, a path, the bytes of a file, an image input or gallery:NAME, "
         f"got {type(source).__name__}."

@@ -70,10 +70,13 @@ class ExemplarChoice:
         return cls(exemplar.name, origin.scale, origin.crop, exemplar.sha256)
 
     def load(self) -> ImageInput:
-        """Return the exemplar; raises ``ImageError`` when it cannot be read."""
+        """Return the exemplar; raises ``InputError`` when it cannot be read, or has another hash."""
         from texlab_core.images import as_exemplar
 
-        return as_exemplar(self.name, scale=self.scale, crop=self.crop)
+        found = as_exemplar(self.name, scale=self.scale, crop=self.crop)
+        if self.sha256 not in ("", found.sha256):
+            raise RecipeError(f"{self.name} is not the image that the sweep was made with; name the one to use.")
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from texlab_core.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.registry import find_method
 from texlab_core.sweep import show
@@ -15,6 +13,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from texlab_core.sweep import Cell, Sweep
@@ -92,7 +91,8 @@ def write_sheet(
     InputError
         When the sheet would be too large, or cannot be written.
     """
-    from texlab_core.image_writing import write_image
+    from texlab_core.files import write_whole
+    from texlab_core.image_writing import encode_png
     from texlab_core.run import versions
     from texlab_core.sweep_recipes import TEXT_KEY, SweepRecipe
 
@@ -101,7 +101,7 @@ def write_sheet(
     sheet = sweep_sheet(sweep, cells, columns=across, largest=largest)
     recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
     text = json.dumps(recipe, separators=(",", ":"), allow_nan=False)
-    write_image(path, sheet.astype(np.float32) / np.float32(255), text={TEXT_KEY: text})
+    write_whole(path, encode_png(sheet, {TEXT_KEY: text}))
 
 
 def sheet_columns(sweep: Sweep) -> int:

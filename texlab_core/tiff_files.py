@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -76,6 +77,8 @@ def _check_complete(page: Any, file: BinaryIO) -> None:
     )
     if not last or last > end:
         raise ValueError(f"{last} bytes expected, {end} found")
+    if len(page.dataoffsets) < (parts := math.prod(page.chunked)):
+        raise ValueError(f"{parts} strips or tiles expected, {len(page.dataoffsets)} found")
 
 
 def _samples(page: Any) -> NDArray[Any]:

@@ -171,6 +171,15 @@ def test_tiff_floats_in_and_out_of_range(dtype):
     assert "were mapped to 0 to 1" in made.notes[0]
 
 
+def test_tiff_with_fewer_strips_than_its_height_is_damaged():
+    data = bytearray(tiff(GRAY8, photometric="minisblack"))
+    with tifffile.TiffFile(io.BytesIO(bytes(data))) as file:
+        tag = file.pages[0].tags["ImageLength"]
+        data[tag.valueoffset : tag.valueoffset + 2] = (1000).to_bytes(2, "little")
+    with pytest.raises(ImageError, match="strips or tiles expected, 1 found"):
+        as_exemplar(bytes(data))
+
+
 def test_tiff_signed_integers_are_mapped_from_their_range():
     made = as_exemplar(tiff(np.array([[-100, 0], [100, 300]], np.int16), photometric="minisblack"))
     assert np.array_equal(made.pixels[..., 0], np.float32([[0, 0.25], [0.5, 1]]))

@@ -107,6 +107,20 @@ def test_read_only_views_are_copied_too():
     assert (made.pixels == 0.5).all()
 
 
+@pytest.mark.parametrize("dtype", [">u2", ">f4", "<f8", ">f2", "u1"])
+def test_the_order_of_bytes_and_subclasses_do_not_matter(dtype):
+    values = np.arange(12).reshape(3, 4).astype(dtype)
+    values = values / 12 if values.dtype.kind == "f" else values
+    plain = as_exemplar(values.astype(values.dtype.newbyteorder("=")))
+    for each in (values, np.ma.masked_array(values)):
+        assert as_exemplar(each).sha256 == plain.sha256
+
+
+def test_an_empty_name_is_said_to_be_empty():
+    with pytest.raises(ImageError, match="The name of the image is empty"):
+        as_exemplar("")
+
+
 def test_equal_channels_become_gray_with_a_note():
     gray = np.random.default_rng(0).integers(0, 256, (5, 4, 1), dtype=np.uint8)
     made = as_exemplar(np.repeat(gray, 3, axis=2))

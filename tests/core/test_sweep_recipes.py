@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import numpy as np
@@ -19,6 +20,7 @@ from texlab_core.run import Job
 from texlab_core.sweep import Cell, Vary, run_sweep, sweep_of
 from texlab_core.sweep_recipes import (
     TEXT_KEY,
+    ExemplarChoice,
     SweepRecipe,
     bundled_sweeps,
     find_sweep,
@@ -154,6 +156,17 @@ def test_a_sheet_carries_its_recipe(tmp_path):
         find_sweep(str(tmp_path / "text.png"))
     with pytest.raises(RecipeError, match=r"cannot be opened \(No such file or directory\)"):
         find_sweep(str(tmp_path / "missing.png"))
+
+
+def test_another_image_of_the_same_name_is_noticed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_image("wall.png", np.full((8, 8), 0.25, np.float32))
+    choice = ExemplarChoice.of(as_exemplar("wall.png"))
+    assert choice.load().sha256 == choice.sha256
+    write_image("wall.png", np.full((8, 8), 0.5, np.float32))
+    with pytest.raises(RecipeError, match=r"wall\.png is not the image that the sweep was made with"):
+        choice.load()
+    assert dataclasses.replace(choice, sha256="").load().size == (8, 8)
 
 
 def test_a_recipe_without_an_exemplar_asks_for_one():
