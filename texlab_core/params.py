@@ -128,11 +128,11 @@ class Field:
             return f"a {self.type.__name__}"
         noun = ("an odd whole number" if self.knob.odd else "a whole number") if self.kind == "int" else "a number"
         if low is not None and high is not None:
-            return f"{noun} from {low:g} to {high:g}"
+            return f"{noun} from {low:.10g} to {high:.10g}"
         if low is not None:
-            return f"{noun} of at least {low:g}"
+            return f"{noun} of at least {low:.10g}"
         if high is not None:
-            return f"{noun} of at most {high:g}"
+            return f"{noun} of at most {high:.10g}"
         return noun
 
     def check(self, given: object) -> Any:
@@ -144,7 +144,8 @@ class Field:
             When it is of another kind, out of range, not finite, or no known choice.
         """
         if self.kind == "bool":
-            if isinstance(given, bool) or type(given).__name__ == "bool":
+            # numpy's own is called bool or, before version 2, bool_.
+            if isinstance(given, bool) or type(given).__name__ in ("bool", "bool_"):
                 return bool(given)
             raise ParamError(self.name, self.allowed, given)
         if self.kind == "choice":

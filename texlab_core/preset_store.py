@@ -15,6 +15,8 @@ from texlab_core.strict_json import MAX_BYTES, loads
 if TYPE_CHECKING:
     import os
 
+_MAX_STEM = 240
+
 
 class PresetStore:
     """The presets in one folder.
@@ -143,7 +145,9 @@ def file_name(preset: Preset) -> str:
     """Return a file name that every system accepts ("de-bonet-paper.json")."""
     # The method in front also keeps clear of the names that Windows gives to devices.
     name = re.sub(r'[<>:"|?*%]', lambda match: f"%{ord(match[0]):02x}", preset.name)
-    return f"{preset.method}-{name}.json"
+    # A name has at most 255 bytes on most systems; a few are left for a number.
+    stem = f"{preset.method}-{name}".encode()[:_MAX_STEM].decode(errors="ignore").rstrip(" .")
+    return f"{stem}.json"
 
 
 def export_preset(preset: Preset, path: str | os.PathLike[str], *, replace: bool = False) -> Path:

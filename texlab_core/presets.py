@@ -252,7 +252,7 @@ def pick(presets: tuple[Preset, ...], name: str, method: str | None = None) -> P
         When there is none, or several methods have one of this name.
     """
     before, slash, after = name.partition("/")
-    if slash:
+    if before and slash:
         method, name = before, after
     among = {each.key: each for each in reversed(presets) if method is None or each.method == method}
     folded = unicodedata.normalize("NFC", name).casefold()

@@ -236,11 +236,12 @@ def _drive(
         while True:
             if should_stop is not None and should_stop():
                 raise Cancelled
-            step = next(steps)
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                return end.value
             if on_step is not None:
                 on_step(step if step.phase == phase else replace(step, phase=phase))
-    except StopIteration as end:
-        return end.value
     finally:
         steps.close()
 

@@ -315,3 +315,22 @@ def test_find_by_file_then_own_then_bundled(tmp_path):
         assert find_preset(each.name, store, each.method) == each
         store.save(Preset(name=each.name, method=each.method, note="my own"))
         assert find_preset(f"{each.method}/{each.name}", store).note == "my own"
+
+
+@pytest.mark.parametrize("name", ["\N{GRINNING FACE}" * 60, "?" * 60, "\u00e9" * 60, "x" * 60])
+def test_the_longest_names_fit_into_a_file_name(tmp_path, name):
+    store = PresetStore(tmp_path)
+    preset = make(name, method="heeger-bergen", parameters={})
+    assert len(file_name(preset).encode()) <= 250
+    store.save(preset)
+    assert store.load(name) == preset
+    # Names that differ only where they are cut get files of their own.
+    if len(name.encode()) > 200:
+        store.save(make(name[:-1], method="heeger-bergen", parameters={}))
+    assert store.load(name) == preset
+    assert store.problems() == ()
+
+
+def test_a_path_without_a_method_is_no_method():
+    with pytest.raises(PresetError, match=r"There is no preset of stub called '/dev/null'"):
+        pick((), "/dev/null", "stub")

@@ -117,6 +117,14 @@ def test_a_watcher_that_fails_closes_the_generator(log: Log, exemplar: ImageInpu
     assert log.closed == 1
 
 
+def test_a_callback_that_runs_out_is_no_result(log: Log, exemplar: ImageInput) -> None:
+    def watch(step: Step) -> None:
+        next(iter(()))
+
+    with pytest.raises(StopIteration):
+        run(job(exemplar), watch)
+
+
 def test_the_analysis_is_kept_while_what_it_depends_on_stays(log: Log, exemplar: ImageInput) -> None:
     cache = AnalysisCache()
     first = run(job(exemplar), cache=cache)
