@@ -14,6 +14,7 @@ import sys
 from typing import TYPE_CHECKING, NoReturn, Protocol, cast
 
 import texlab.commands
+from texlab.terminal import INTERRUPTED, append_to_log, complain, orderly_interrupts
 from texlab_core import __version__
 from texlab_core.errors import Cancelled, InputError
 
@@ -52,7 +53,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print one sentence and leave with 2."""
-        self.exit(2, f"{self.prog}: {message.rstrip('.')}; see {self.prog} --help.\n")
+        complain(f"{message.rstrip('.')}; see {self.prog} --help.", self.prog)
+        self.exit(2)
 
     def format_help(self) -> str:
         """Return the help, followed by what ``more_help`` adds."""
@@ -74,28 +76,34 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit code.
     """
     _never_fail_on_unprintable()
-    given = list(sys.argv[1:] if argv is None else argv)
     try:
-        args = build_parser(given).parse_args(given or ["gui"])
-        code = int(args.execute(args))
-        _flush()
+        with orderly_interrupts():
+            code = _run(list(sys.argv[1:] if argv is None else argv))
+            _flush()
         return code
-    except SystemExit as end:  # argparse has printed help, version or an error
-        return end.code if isinstance(end.code, int) else 0
     except (KeyboardInterrupt, Cancelled):
-        return 130
+        return INTERRUPTED
     except BrokenPipeError:  # the reader of the output went away ("texlab gallery | head")
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard_output()
         return 0
     except InputError as error:
         return _refuse(str(error))
     except OSError as error:
+        _discard_output()
         where = f"{error.filename}: " if error.filename else ""
         return _refuse(f"{where}{error.strerror or error}.")
     except MemoryError:
         return _refuse("There is not enough memory for this; try a smaller size.")
     except Exception as error:
         return _report(error)
+
+
+def _run(given: Sequence[str]) -> int:
+    try:
+        args = build_parser(given).parse_args(given or ["gui"])
+    except SystemExit as end:  # argparse has printed help, version or an error
+        return end.code if isinstance(end.code, int) else 0
+    return int(args.execute(args))
 
 
 def main_gui() -> int:
@@ -134,28 +142,23 @@ def find_commands() -> dict[str, Command]:
 
 
 def _refuse(sentence: str) -> int:
-    print(f"texlab: {sentence}", file=sys.stderr)
+    complain(sentence)
     return 2
 
 
 def _report(error: Exception) -> int:
     """Log an unexpected error; say so in one sentence."""
-    import datetime
     import traceback
 
     from texlab.paths import log_file
 
     what = f"Something unexpected happened ({type(error).__name__}: {' '.join(str(error).split())})"
-    log = log_file()
     try:
-        log.parent.mkdir(parents=True, exist_ok=True)
-        with log.open("a", encoding="utf-8") as file:
-            when = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-            file.write(f"{when} texlab {__version__}\n{''.join(traceback.format_exception(error))}\n")
-        where = f"the details are in {log}"
+        append_to_log("".join(traceback.format_exception(error)))
+        where = f"the details are in {log_file()}"
     except OSError as trouble:
-        where = f"the log {log} could not be written ({trouble.strerror})"
-    print(f"texlab: {what}; {where}.", file=sys.stderr)
+        where = f"the log {log_file()} could not be written ({trouble.strerror})"
+    complain(f"{what}; {where}.")
     return 1
 
 
@@ -167,6 +170,16 @@ def _never_fail_on_unprintable() -> None:
 
 
 def _flush() -> None:
-    """Let a broken pipe show here rather than when Python ends."""
+    """Let a broken pipe or a full disk show here rather than when Python ends."""
     if sys.stdout is not None:
         sys.stdout.flush()
+
+
+def _discard_output() -> None:
+    """Send what cannot be printed nowhere, so that Python does not fail on it once more when it ends."""
+    try:
+        _flush()
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)

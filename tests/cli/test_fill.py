@@ -114,7 +114,7 @@ def test_a_recipe_makes_the_same_fill_again(texlab: Texlab, wall: str, mask: str
         (("--mask", "white.png"), "mask: covers the whole image, so that nothing is left to grow from."),
         (("--size", "20x20"), "size: must be at least that of the start image, 30 x 28 pixels, got 20 x 20."),
         (("--mask", "mask.png", "--set", "window=2"), "window: must be an odd whole number from 3 to 41, got 2."),
-        (("--mask", "mask.png", "--out", "wall.png"), "wall.png is the exemplar itself"),
+        (("--mask", "mask.png", "--out", "wall.png"), "wall.png is what the result is made from"),
     ],
 )
 def test_what_cannot_work_is_said_in_one_sentence(

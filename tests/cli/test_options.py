@@ -105,7 +105,7 @@ def test_the_exemplar_is_never_overwritten(tmp_path: Path) -> None:
     image.touch()
     os.link(image, tmp_path / "same.png")
     for name in ("wall.png", "same.png"):
-        with pytest.raises(InputError, match="is the exemplar itself"):
+        with pytest.raises(InputError, match="is what the result is made from"):
             refuse_overwriting(tmp_path / name, str(image))
     refuse_overwriting(tmp_path / "other.png", str(image))
     refuse_overwriting(image, "gallery:structured-pebbles")

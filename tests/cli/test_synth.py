@@ -132,7 +132,7 @@ def test_a_preset_is_the_base_of_settings(texlab: Texlab, ramp: Path) -> None:
         (["--crop", "9"], "crop: must be width"),
         (["--out", "a.gif"], "a.gif: images are written as"),
         (["--out", "no/a.png"], "The folder no does not exist"),
-        (["--out", "ramp.png"], "is the exemplar itself"),
+        (["--out", "ramp.png"], "is what the result is made from"),
         (["--out", "a.png", "--bits", "float"], "float"),
         (["--maps", "no/maps"], "The folder no does not exist"),
         (["--maps", "ramp.png"], "is a file"),
@@ -243,6 +243,49 @@ def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab) -> None:
     assert "other.png is not the image of the recipe" in wrong.err
     right = texlab("redo", "a.png", "--exemplar", "large.png", "--out", "b.png", "--json")
     assert json.loads(right.out)["same_bits"] is True
+
+
+def test_redo_takes_every_missing_image_by_its_name(texlab: Texlab) -> None:
+    write_image("large.png", LARGE)
+    write_image("other.png", 1 - LARGE)
+    fill = ("--size", "1001x900", "--set", "window=3", "--out", "a.png")
+    assert texlab("fill", "large.png", *fill).code == 0
+    # The image that is grown outward is its own exemplar, and named once.
+    one = texlab("redo", "a.png", "--exemplar", "large.png", "--out", "b.png", "--json")
+    assert json.loads(one.out)["same_bits"] is True
+    assert texlab("fill", "large.png", "--exemplar", "gallery:structured-pebbles", *fill).code == 0
+    for given in ((), ("--exemplar", "gallery:structured-pebbles")):
+        shown = texlab("redo", "a.png", "--out", "b.png", *given)
+        assert (shown.code, shown.out) == (2, "")
+        assert "does not hold the start large.png" in shown.err
+        assert shown.err.endswith("give it with --input start=IMAGE.\n")
+    other = texlab("redo", "a.png", "--out", "b.png", "--input", "start=large.png", "--json")
+    assert json.loads(other.out)["same_bits"] is True
+    for wrong, says in (
+        (("--input", "start=other.png"), "other.png is not the image of the recipe"),
+        (("--input", "magic=large.png"), "does not hold the start"),
+        (("--input", "magic=large.png", "--input", "start=large.png"), "has no image called magic"),
+        (("--input", "start"), "a name and an image"),
+        (("--input", "start=a.png", "--input", "start=b.png"), "given twice"),
+        (("--input", "start=large.png", "--out", "large.png"), "is what the result is made from"),
+    ):
+        shown = texlab("redo", "a.png", "--out", "b.png", *wrong)
+        assert (shown.code, shown.err.count("\n")) == (2, 1)
+        assert says in shown.err
+
+
+def test_a_map_overwrites_neither_exemplar_nor_result(texlab: Texlab) -> None:
+    Path("maps").mkdir()
+    write_image("maps/source.png", LARGE[:9, :9])
+    before = Path("maps/source.png").read_bytes()
+    shown = texlab("synth", "maps/source.png", "--method", "tiling", "--out", "a.png", "--maps", "maps")
+    assert shown.code == 2
+    assert "would be overwritten by a map" in shown.err
+    assert Path("maps/source.png").read_bytes() == before
+    again = texlab("synth", "a.png", "--method", "tiling", "--out", "maps/source.png", "--maps", "maps")
+    assert again.code == 2
+    assert read_recipe("maps/source.png").method == "tiling"
+    assert texlab("synth", "a.png", "--method", "tiling", "--out", "b.png", "--maps", "").code == 2
 
 
 def test_redo_refuses_files_without_a_recipe(texlab: Texlab, ramp: Path) -> None:

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from texlab_core.errors import InputError, ParamError
-from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from texlab_core.inputs import Crop
 
 NumberT = TypeVar("NumberT", int, float)
 
@@ -30,6 +31,8 @@ def parse_crop(text: str) -> Crop:
     found = re.fullmatch(r"([0-9]{1,9}[xX×][0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())
     if found is None:
         raise ParamError("crop", "width, height, left and top as in 256x192+10+20", text)
+    from texlab_core.inputs import Crop
+
     height, width = parse_size(found[1], "crop")
     return Crop(top=int(found[3]), left=int(found[2]), height=height, width=width)
 
@@ -74,17 +77,22 @@ def output_file(text: str) -> Path:
 def output_folder(text: str) -> Path:
     """Return the path of a folder that can be written to, made if need be; raises ``InputError``."""
     path = Path(text)
+    if not text:
+        raise InputError("The name of the folder is empty.")
     if path.exists() and not path.is_dir():
         raise InputError(f"{text} is a file, and a folder is wanted.")
     _check_writable(path if path.exists() else path.parent)
-    path.mkdir(exist_ok=True)
+    try:
+        path.mkdir(exist_ok=True)
+    except ValueError as error:
+        raise InputError(f"{text!r} is no name for a folder ({error}).") from error
     return path
 
 
 def refuse_overwriting(out: Path, source: str) -> None:
     """Raise ``InputError`` when writing ``out`` would destroy the image that the result is made from."""
     if out.exists() and os.path.exists(source) and os.path.samefile(out, source):
-        raise InputError(f"{out} is the exemplar itself; choose another file for --out.")
+        raise InputError(f"{out} is what the result is made from; choose another file for --out.")
 
 
 def _check_writable(folder: Path) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.commands._options import output_file, parse_crop, parse_number, parse_size, refuse_overwriting
 from texlab.commands._progress import share_bar
+from texlab.terminal import interrupted
 
 if TYPE_CHECKING:
     import argparse
@@ -70,7 +71,7 @@ def execute(args: argparse.Namespace) -> int:
     cells = len(jobs) + 1
     check_sheet(cells, columns or series_columns(cells), jobs[0].size)
     with share_bar(f"{len(jobs)} methods") as show:
-        compared = compare(jobs, on_progress=show)
+        compared = compare(jobs, on_progress=show, should_stop=interrupted)
     write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))
     report(compared, out, as_json=args.json)
     return 0

@@ -57,15 +57,15 @@ def execute(args: argparse.Namespace) -> int:
     size = None if args.size is None else parse_size(args.size)
     seed = parse_number("seed", args.seed, int)
     outputs = check_outputs(args, BITS[args.bits or "8"])
-    for each in (args.image, args.mask, args.exemplar, args.region):
-        if each is not None:
-            refuse_overwriting(outputs.image, each)
+    sources = [each for each in (args.image, args.mask, args.exemplar, args.region) if each is not None]
+    for each in sources:
+        refuse_overwriting(outputs.image, each)
 
     from texlab_core.run import Job
 
     inputs, image = _inputs(args)
     job = Job(method=METHOD, inputs=inputs, params=params, size=size or image.size, seed=seed)
-    result = make(job, outputs)
+    result = make(job, outputs, keep=sources)
     print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
     return 0
 

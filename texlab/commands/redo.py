@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.commands._options import refuse_overwriting
 from texlab.commands.synth import Outputs, add_output_options, check_outputs, described, make, summary_of
+from texlab.terminal import complain
+from texlab_core.errors import InputError, ParamError, RecipeError
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping
 
     from texlab.cli import Parser
     from texlab_core.image_files import Decoded
@@ -26,6 +28,13 @@ def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("result", metavar="RESULT.png", help="a result that TexLab saved")
     parser.add_argument("--exemplar", metavar="IMAGE", help="the exemplar, where the file does not hold it")
+    parser.add_argument(
+        "--input",
+        action="append",
+        default=[],
+        metavar="NAME=IMAGE",
+        help="another image that the file does not hold, as in start=wall.jpg",
+    )
     add_output_options(parser)
 
 
@@ -36,13 +45,11 @@ def execute(args: argparse.Namespace) -> int:
     recipe = read_recipe(args.result)
     before = _pixels(args.result)
     outputs = check_outputs(args, _bits(args, before))
-    if args.exemplar is not None:
-        refuse_overwriting(outputs.image, args.exemplar)
-    elif recipe.missing:
-        from texlab_core.errors import RecipeError
-
-        raise RecipeError(f"{args.result} does not hold {recipe.missing[0].described}; give it with --exemplar.")
-    result = make(recipe.job(args.exemplar), outputs)
+    given = _given(args)
+    for image in given.values():
+        refuse_overwriting(outputs.image, image)
+    _check_missing(args.result, recipe, given)
+    result = make(recipe.job(given=given), outputs, keep=tuple(given.values()))
     same = _same_bits(before, outputs)
     if args.json:
         print(json.dumps(summary_of(result, outputs) | {"same_bits": same}))
@@ -51,8 +58,32 @@ def execute(args: argparse.Namespace) -> int:
         if same:
             print(f"  The same bits as in {args.result}.")
     if same is False:
-        print(f"texlab: {_difference(args.result, recipe)}", file=sys.stderr)
+        complain(_difference(args.result, recipe))
     return 0
+
+
+def _given(args: argparse.Namespace) -> dict[str, str]:
+    """Return the images that were named, by the role they have in the recipe."""
+    given = {} if args.exemplar is None else {"exemplar": args.exemplar}
+    for text in args.input:
+        role, equals, image = text.partition("=")
+        if not equals or not role or not image:
+            raise ParamError("input", "a name and an image as in start=wall.jpg", text)
+        if role in given:
+            raise InputError(f"The input {role} is given twice.")
+        given[role] = image
+    return given
+
+
+def _check_missing(name: str, recipe: Recipe, given: Mapping[str, str]) -> None:
+    """Raise ``RecipeError`` when the file lacks an input that was not given either."""
+    held = {recipe.inputs[role].sha256 for role in given if role in recipe.inputs}
+    for each in recipe.missing:
+        if each.role in given or each.sha256 in held:
+            continue
+        option = "--exemplar" if each.role == "exemplar" else f"--input {each.role}=IMAGE"
+        remedy = f"; give it with {option}." if each.kind == "image" else ", and cannot be made again without it."
+        raise RecipeError(f"{name} does not hold {each.described}{remedy}")
 
 
 def _pixels(path: str) -> Decoded | None:

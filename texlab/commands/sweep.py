@@ -14,6 +14,7 @@ from texlab.commands._options import (
     refuse_overwriting,
 )
 from texlab.commands._progress import share_bar
+from texlab.terminal import interrupted, logged_quietly
 
 if TYPE_CHECKING:
     import argparse
@@ -69,12 +70,12 @@ def execute(args: argparse.Namespace) -> int:
     if not 64 <= largest <= 512:
         raise ParamError("cell", "a whole number from 64 to 512", largest)
     recipe, exemplar = plan(args)
-    if args.image is not None:
-        refuse_overwriting(out, args.image)
+    source = args.image or (recipe.exemplar.name if recipe.exemplar else "")
+    refuse_overwriting(out, source)
     sweep = recipe.sweep(exemplar)
     check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.size, largest)
-    with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show:
-        cells = run_sweep(sweep, on_progress=show)
+    with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
+        cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
     report(sweep, cells, str(out), as_json=args.json)
     return 0
@@ -120,6 +121,7 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
         raise InputError("A sweep needs an exemplar: name an image or gallery:NAME.")
     choice = dataclasses.replace(
         base.exemplar,
+        sha256=base.exemplar.sha256 if args.scale is None and args.crop is None else "",
         scale=base.exemplar.scale if args.scale is None else parse_number("scale", args.scale, float),
         crop=base.exemplar.crop if args.crop is None else parse_crop(args.crop),
     )

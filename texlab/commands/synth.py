@@ -17,6 +17,7 @@ from texlab.commands._options import (
     refuse_overwriting,
 )
 from texlab.commands._progress import progress
+from texlab.terminal import interrupted
 
 if TYPE_CHECKING:
     import argparse
@@ -79,7 +80,7 @@ def execute(args: argparse.Namespace) -> int:
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
     )
-    result = make(job, outputs)
+    result = make(job, outputs, keep=(args.image,))
     print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
     return 0
 
@@ -112,16 +113,16 @@ def check_outputs(args: argparse.Namespace, bits: Bits) -> Outputs:
     return Outputs(image, None if args.maps is None else output_folder(args.maps), bits)
 
 
-def make(job: Job, outputs: Outputs) -> Result:
-    """Run a job and save what it makes."""
+def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
+    """Run a job and save what it makes; the sources to ``keep`` are not overwritten by maps."""
     from texlab_core.record import save_maps, save_result
     from texlab_core.run import run
 
     with progress(job.method) as show:
-        result = run(job, show)
+        result = run(job, show, interrupted)
     save_result(result, outputs.image, bits=outputs.bits)
     if outputs.maps is not None:
-        save_maps(result, outputs.maps)
+        save_maps(result, outputs.maps, spare=[outputs.image, *keep])
     return result
 
 

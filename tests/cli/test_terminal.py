@@ -1,0 +1,194 @@
+"""Standard error that is closed or full, names that would move the cursor, and Ctrl-C."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+from texlab import cli, terminal
+from texlab.terminal import complain, interrupted, logged_quietly, orderly_interrupts
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from tests.cli.conftest import Texlab
+
+posix = pytest.mark.skipif(os.name == "nt", reason="signals and devices of Unix")
+
+
+def test_a_complaint_is_one_line_that_changes_no_colours(capsys: pytest.CaptureFixture[str]) -> None:
+    complain("no\n\x1b[2J\u202e\udcff: Wände")
+    assert capsys.readouterr().err == "texlab: no\\n\\x1b[2J\\u202e\\udcff: Wände\n"
+
+
+def test_without_standard_error_nothing_is_said(monkeypatch: pytest.MonkeyPatch, texlab: Texlab) -> None:
+    monkeypatch.setattr(sys, "stderr", None)
+    assert cli.main(["synth", "missing.png", "--method", "tiling", "--out", "a.png"]) == 2
+    assert cli.main(["synth"]) == 2
+
+
+@posix
+@pytest.mark.parametrize(
+    "arguments",
+    [["gallery"], ["gallery", "--json"], ["--help"], ["--version"], ["methods", "--json"]],
+    ids=" ".join,
+)
+def test_a_full_standard_output_is_one_sentence(arguments: list[str]) -> None:
+    without = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "texlab", *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            env=without,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert done.stderr == b"texlab: No space left on device.\n"
+
+
+@posix
+@pytest.mark.parametrize("arguments", [["synth"], ["redo", "missing.png", "--out", "a.png"]], ids=" ".join)
+def test_a_full_or_closed_standard_error_changes_no_exit_code(arguments: list[str]) -> None:
+    command = [sys.executable, "-m", "texlab", *arguments]
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=full, check=False)
+    assert (done.returncode, done.stdout) == (2, b"")
+    closed = subprocess.run([*["sh", "-c", 'exec "$@" 2>&-', "sh"], *command], stdout=subprocess.PIPE, check=False)
+    assert (closed.returncode, closed.stdout) == (2, b"")
+
+
+@pytest.fixture
+def press() -> Iterator[Callable[[], None]]:
+    """Return what presses Ctrl-C in this process."""
+    yield lambda: os.kill(os.getpid(), signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def within(work: Callable[[], None]) -> None:
+    with orderly_interrupts():
+        work()
+
+
+@posix
+def test_whoever_asks_learns_of_an_interruption(press: Callable[[], None]) -> None:
+    seen = []
+
+    def work() -> None:
+        seen.append(interrupted())
+        press()
+        limit = time.monotonic() + 20
+        while not interrupted() and time.monotonic() < limit:
+            time.sleep(0.01)
+        # Nothing is raised on the way out of work that has heard of it.
+        time.sleep(2 * terminal._PATIENCE_S)
+        seen.append(interrupted())
+
+    with pytest.raises(KeyboardInterrupt):
+        within(work)
+    assert seen == [False, True]
+    assert not interrupted()
+
+
+@posix
+def test_work_that_does_not_ask_is_interrupted(press: Callable[[], None]) -> None:
+    reached = []
+
+    def work() -> None:
+        press()
+        time.sleep(20)
+        reached.append(1)
+
+    with pytest.raises(KeyboardInterrupt):
+        within(work)
+    assert reached == []
+
+
+@posix
+def test_imports_are_not_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, press: Callable[[], None]
+) -> None:
+    (tmp_path / "slow_to_import.py").write_text(
+        "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(1)\nDONE = True\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    found = []
+
+    def work() -> None:
+        found.append(importlib.import_module("slow_to_import").DONE)
+        time.sleep(20)
+        found.append(False)
+
+    with pytest.raises(KeyboardInterrupt):
+        within(work)
+    assert found == [True]
+
+
+def test_uninterrupted_blocks_leave_no_trace() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with orderly_interrupts():
+        assert not interrupted()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@posix
+@pytest.mark.slow
+@pytest.mark.parametrize("presses", [1, 3])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["synth", "--method", "heeger-bergen", "--size", "2048x2048", "--set", "iterations=50"],
+        ["sweep", "--method", "heeger-bergen", "--vary", "seed=0:99:100"],
+        ["compare", "--size", "2048x2048", "--methods", "heeger-bergen,de-bonet"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_ctrl_c_ends_with_130_and_without_half_a_file(tmp_path: Path, arguments: list[str], presses: int) -> None:
+    command = [arguments[0], "gallery:structured-pebbles", *arguments[1:], "--out", str(tmp_path / "a.png")]
+    started = "import sys\nfrom texlab.cli import main\nprint('go', flush=True)\nsys.exit(main(sys.argv[1:]))"
+    with subprocess.Popen(
+        [sys.executable, "-c", started, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        time.sleep(1.5)
+        for _ in range(presses):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.02)
+        _, errors = process.communicate(timeout=60)
+    # A second one may find Python shutting down, and ends it as a shell expects.
+    assert process.returncode in ((130,) if presses == 1 else (130, -signal.SIGINT))
+    assert errors == b""
+    assert os.listdir(tmp_path) == []
+
+
+def test_what_the_core_logs_goes_to_the_log_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("TEXLAB_HOME", str(tmp_path))
+    with logged_quietly():
+        try:
+            raise RuntimeError("told in the log")
+        except RuntimeError:
+            logging.getLogger("texlab_core.sweep").exception("A cell failed")
+    assert capsys.readouterr().err == ""
+    assert "told in the log" in (tmp_path / "log" / "texlab.log").read_text()
+
+
+def test_help_and_version_do_not_even_import_numpy() -> None:
+    code = (
+        "import sys\nfrom texlab.cli import main\nfor each in ['--help', '--version']: main([each])\n"
+        "print(json.dumps('numpy' in sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", f"import json\n{code}"], capture_output=True, check=True)
+    assert json.loads(done.stderr) is False
