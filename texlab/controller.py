@@ -263,15 +263,20 @@ class Controller(QObject):
         worker.idle.connect(end)
         worker.submit(request)
 
-    def close(self) -> None:
-        """Stop and join every thread."""
+    def _workers(self) -> list[Worker]:
+        columns = [runtime.worker for runtime in self._runtimes.values()]
+        return [*columns, *self._leaving, self._exemplar_worker, *self._once_workers]
+
+    def leave(self) -> None:
+        """Ask every thread to end, without waiting."""
         self._refresh.stop()
-        workers = [runtime.worker for runtime in self._runtimes.values()]
-        workers += [*self._leaving, self._exemplar_worker, *self._once_workers]
-        # All are asked first, so that they end side by side.
-        for worker in workers:
+        for worker in self._workers():
             worker.leave()
-        for worker in workers:
+
+    def close(self) -> None:
+        """Stop and join every thread; they end side by side."""
+        self.leave()
+        for worker in self._workers():
             worker.close()
         self._runtimes.clear()
         self._once_workers.clear()

@@ -50,6 +50,11 @@ class DockHost(QObject):
         self._scene = scene
         self._update()
 
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting."""
+        if self._worker is not None:
+            self._worker.leave()
+
     def close(self) -> None:
         """Stop and join the thread, and what the dock started itself."""
         self._rest.stop()

@@ -148,6 +148,9 @@ class Explorer(QObject):
         self.window.remember_geometry()
         # Nobody has to watch the threads come to their end.
         self.window.hide()
+        self.controller.leave()
+        for host in self.hosts:
+            host.leave()
         self.autosave.close()
         for host in self.hosts:
             host.close()

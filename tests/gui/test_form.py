@@ -499,4 +499,4 @@ def test_another_column_of_the_same_method_keeps_the_form(qtbot):
     view.show_column(0, None, None)
     assert view.form is None
     assert not view.reset_button.isEnabled()
-    assert view.title.text() == "No column is chosen"
+    assert view.title.text() == "There is no column"

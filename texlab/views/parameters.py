@@ -72,9 +72,10 @@ class ParametersView(QWidget):
         self._column_id = column_id
         self.reset_button.setEnabled(method is not None)
         self.help_button.setEnabled(method is not None)
+        self.presets.setEnabled(method is not None)
         if method is None or params is None:
-            self.title.setText("No column is chosen")
-            self.summary.setText("Click a column to see its parameters.")
+            self.title.setText("There is no column")
+            self.summary.setText("Add one with + Column (Ctrl+T).")
             self._set_form(None)
             self._method = ""
             return
@@ -96,7 +97,8 @@ class ParametersView(QWidget):
         if old is not None:
             old.deleteLater()
         self.form = form
+        # Without anything in it, the area would keep the scroll bar of what it had.
+        self.scroll_area.setWidget(form or QWidget())
         if form is not None:
-            self.scroll_area.setWidget(form)
             form.dock_wanted.connect(self.dock_wanted)
             form.edited.connect(lambda params, name, final: self.edited.emit(self._column_id, params, name, final))
