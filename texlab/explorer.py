@@ -116,7 +116,7 @@ class Explorer(QObject):
         self.session.apply(State(None, made, seed, size, len(made) + 1), "start")
         place = saved.get("selected", 0) if isinstance(saved, dict) else 0
         place = place if isinstance(place, int) and 0 <= place < len(made) else 0
-        self.session.select(made[place].id)
+        self._select(made[place].id)
         self.session.reset_history()
         self._open_first(source, saved)
         # What the first columns do not need is loaded once they have what they need.
@@ -306,8 +306,7 @@ class Explorer(QObject):
     def _select(self, column_id: int) -> None:
         if column_id:
             self.session.select(column_id)
-            # The new column has no place before the next layout.
-            QTimer.singleShot(0, lambda: self.workspace.reveal(column_id))
+            self.workspace.reveal(column_id)
 
     def _step_column(self, by: int) -> None:
         places = [column.id for column in self.session.state.columns]

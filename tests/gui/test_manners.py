@@ -199,6 +199,25 @@ def test_a_new_column_shows_the_place_and_scale_of_the_others(qtbot: Any, explor
     assert new.view_rect().contains(QPointF(1, 1))
 
 
+def test_a_new_column_comes_into_sight(qtbot: Any, explorer: Explorer) -> None:
+    explorer.window.resize(900, 600)
+    for _ in range(4):
+        qtbot.keyClick(explorer.window, Qt.Key.Key_D, CONTROL)
+    wait_idle(qtbot, explorer)
+    explorer.window.actions_by_name["previous"].trigger()
+    explorer._select(explorer.session.add_column(*hb()))
+    new = ids(explorer)[-1]
+
+    def whole() -> bool:
+        view = explorer.workspace.columns.get(new)
+        port = explorer.workspace.viewport()
+        return view is not None and port.rect().contains(view.mapTo(port, view.rect().center()))
+
+    qtbot.waitUntil(whole, timeout=5_000)
+    assert explorer.workspace.horizontalScrollBar().value() == explorer.workspace.horizontalScrollBar().maximum()
+    wait_idle(qtbot, explorer)
+
+
 def test_keys_are_commands_from_the_start(qtbot: Any, explorer: Explorer) -> None:
     explorer.window.activateWindow()
     focus = explorer.window.focusWidget()

@@ -50,6 +50,9 @@ class Workspace(QScrollArea):
         self._tiled = False
         self._theme: Theme | None = None
         self._order: tuple[int, ...] = ()
+        self._revealed = 0
+        # Columns have come or gone, or the window is narrower.
+        self.horizontalScrollBar().rangeChanged.connect(lambda *_: self._scroll())
 
     def show_scene(self, scene: Scene) -> None:
         """Show every column as it is."""
@@ -97,8 +100,12 @@ class Workspace(QScrollArea):
             view.set_theme(theme)
 
     def reveal(self, column_id: int) -> None:
-        """Scroll a column into sight."""
-        view = self.columns.get(column_id)
+        """Scroll a column into sight, also one that has no place yet."""
+        self._revealed = column_id
+        self._scroll()
+
+    def _scroll(self) -> None:
+        view = self.columns.get(self._revealed)
         if view is not None:
             at = view.mapTo(self._inner, QPoint(view.width() // 2, 0))
             self.ensureVisible(at.x(), at.y(), view.width() // 2 + 8, 0)
