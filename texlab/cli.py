@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         _discard_output()
         where = f"{error.filename}: " if error.filename else ""
-        return _refuse(f"{where}{error.strerror or error}.")
+        return _refuse(f"{where}{str(error.strerror or error).rstrip('.')}.")
     except MemoryError:
         return _refuse("There is not enough memory for this; try a smaller size.")
     except Exception as error:

@@ -21,6 +21,8 @@ _COLOURS = {_WHITE_IS_ZERO: 1, _BLACK_IS_ZERO: 1, _RGB: 3, _PALETTE: 1, _INKS: 4
 _JPEG = (6, 7, 34892, 33007)
 _PREMULTIPLIED, _UNASSOCIATED = 1, 2
 _MAX_SAMPLES = 16
+# RGB and alpha in doubles, at the largest size.
+_MAX_BYTES = 4 * 8 * MAX_PIXELS
 
 # What tifffile finds odd about a file is told by this module's errors.
 logging.getLogger("tifffile").addHandler(logging.NullHandler())
@@ -64,6 +66,12 @@ def _check_page(page: Any, photometric: int, name: str) -> None:
         raise ImageError(f"{name}: is a TIFF whose numbers TexLab does not read (integers or floats).")
     if page.imagedepth != 1 or samples > _MAX_SAMPLES:
         raise ImageError(f"{name}: is a TIFF volume or stack of {samples} channels, not an image.")
+    # A few compressed megabytes may decode to very many.
+    if page.imagewidth * page.imagelength * samples * page.dtype.itemsize > _MAX_BYTES:
+        raise ImageError(
+            f"{name}: has {samples} channels of {page.dtype} in {page.imagewidth} x {page.imagelength} pixels; "
+            f"at most {_MAX_BYTES // 2**30} GB are decoded."
+        )
     # A tile may be larger than its image, and is decoded whole.
     if np.prod([int(side) for side in page.chunks], dtype=np.float64) > 4 * MAX_PIXELS:
         raise ImageError(f"{name}: is a TIFF with tiles that are too large.")

@@ -180,6 +180,14 @@ def test_tiff_with_fewer_strips_than_its_height_is_damaged():
         as_exemplar(bytes(data))
 
 
+def test_tiff_that_decodes_to_too_many_bytes_is_refused(monkeypatch):
+    data = tiff(np.zeros((8, 8, 16)), photometric="minisblack", planarconfig="contig", compression="zlib")
+    assert as_exemplar(data).channels == 1
+    monkeypatch.setattr("texlab_core.tiff_files._MAX_BYTES", 8 * 8 * 16 * 8 - 1)
+    with pytest.raises(ImageError, match=r"has 16 channels of float64 in 8 x 8 pixels; at most 0 GB are decoded"):
+        as_exemplar(data)
+
+
 def test_tiff_signed_integers_are_mapped_from_their_range():
     made = as_exemplar(tiff(np.array([[-100, 0], [100, 300]], np.int16), photometric="minisblack"))
     assert np.array_equal(made.pixels[..., 0], np.float32([[0, 0.25], [0.5, 1]]))
