@@ -165,8 +165,8 @@ def stylesheet(theme: Theme) -> str:
     QMainWindow > QTabBar::tab:selected {{ background: {theme.base}; border-top-color: {theme.accent}; }}
     QMainWindow > QTabBar::tab:hover {{ color: {theme.text}; }}
     QFrame#column {{ border: 2px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
-    QFrame#column[chosen="true"] {{ border-color: {theme.accent}; }}
     QFrame#column[failed="true"] {{ border-color: {theme.error}; }}
+    QFrame#column[chosen="true"] {{ border-color: {theme.accent}; }}
     QLabel[role="muted"] {{ color: {theme.muted}; }}
     QLabel[role="error"] {{ color: {theme.error}; }}
     QLabel[role="warning"] {{ color: {theme.warning}; }}
