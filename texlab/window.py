@@ -285,10 +285,11 @@ class MainWindow(QMainWindow):
     def arrange(self, layout: str, tuning: str = "histograms") -> None:
         """Arrange the panels: ``explore``, ``teach`` or ``tune``; ``tuning`` is the tab in front for the last."""
         gallery, parameters = self.docks["gallery"], self.docks["parameters"]
+        tabs = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
+        self._bring_home(gallery, parameters, tabs)
         gallery.setVisible(layout == "explore")
         parameters.setVisible(layout != "teach")
         self._set_text_size(layout)
-        tabs = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
         for dock in tabs:
             dock.show()
         if tabs:
@@ -299,6 +300,20 @@ class MainWindow(QMainWindow):
         width = {"explore": 270, "teach": 270, "tune": 420}[layout]
         self.resizeDocks([parameters], [width], Qt.Orientation.Horizontal)
         self.settings.values["layout"] = layout
+
+    def _bring_home(self, gallery: QDockWidget, parameters: QDockWidget, tabs: list[QDockWidget]) -> None:
+        """Put every dock that was dragged elsewhere where it belongs."""
+        areas = Qt.DockWidgetArea
+        homes = {gallery: areas.LeftDockWidgetArea, parameters: areas.RightDockWidgetArea}
+        for dock in self.docks.values():
+            home = homes.get(dock, areas.BottomDockWidgetArea)
+            if dock.isFloating():
+                dock.setFloating(False)
+            if self.dockWidgetArea(dock) != home:
+                self.addDockWidget(home, dock)
+        if tabs and set(self.tabifiedDockWidgets(tabs[0])) != set(tabs[1:]):
+            for dock in tabs[1:]:
+                self.tabifyDockWidget(tabs[0], dock)
 
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""

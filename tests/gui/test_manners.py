@@ -156,6 +156,21 @@ def test_teach_enlarges_the_text_and_the_room_for_it(qtbot: Any, explorer: Explo
     assert line.font().pointSizeF() == pytest.approx(before)
 
 
+def test_a_layout_brings_docks_home(qtbot: Any, explorer: Explorer) -> None:
+    window = explorer.window
+    docks = window.docks
+    docks["histograms"].setFloating(True)
+    docks["gallery"].setFloating(True)
+    window.addDockWidget(Qt.DockWidgetArea.TopDockWidgetArea, docks["maps"])
+    window.splitDockWidget(docks["pyramid"], docks["steps"], Qt.Orientation.Horizontal)
+    window.actions_by_name["layout-explore"].trigger()
+    tabs = [dock for name, dock in docks.items() if name not in ("gallery", "parameters")]
+    assert set(window.tabifiedDockWidgets(docks["pyramid"])) == set(tabs) - {docks["pyramid"]}
+    assert window.dockWidgetArea(docks["gallery"]) == Qt.DockWidgetArea.LeftDockWidgetArea
+    assert not any(dock.isFloating() for dock in docks.values())
+    wait_idle(qtbot, explorer)
+
+
 def test_all_pictures_stand_at_the_same_level(explorer: Explorer) -> None:
     panes = [explorer.workspace.exemplar.pane] + [view.pane for view in explorer.workspace.columns.values()]
     places = {(pane.mapTo(explorer.window, QPoint(0, 0)).y(), pane.height()) for pane in panes}
