@@ -90,8 +90,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _refuse(str(error))
     except OSError as error:
         _discard_output()
+        if error.errno is None:  # raised by a library, not by the system
+            return _report(error)
         where = f"{error.filename}: " if error.filename else ""
-        return _refuse(f"{where}{str(error.strerror or error).rstrip('.')}.")
+        return _refuse(f"{where}{error.strerror}.")
     except MemoryError:
         return _refuse("There is not enough memory for this; try a smaller size.")
     except Exception as error:

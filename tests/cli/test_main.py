@@ -104,7 +104,7 @@ class Failing:
             2,
             "texlab: a.png: No such file or directory.\n",
         ),
-        (OSError("disk gone"), 2, "texlab: disk gone.\n"),
+        (OSError(28, "No space left on device"), 2, "texlab: No space left on device.\n"),
         (MemoryError(), 2, "texlab: There is not enough memory for this; try a smaller size.\n"),
         (KeyboardInterrupt(), 130, ""),
         (Cancelled(), 130, ""),
@@ -121,13 +121,14 @@ def test_errors_become_one_sentence_and_an_exit_code(
 def test_an_unexpected_error_is_logged_and_said_in_one_sentence(
     texlab: Texlab, monkeypatch: pytest.MonkeyPatch, texlab_home: Path
 ) -> None:
-    monkeypatch.setattr(cli, "find_commands", lambda: {"fail": Failing(ZeroDivisionError("one\ntwo"))})
-    shown = texlab("fail")
-    log = texlab_home / "log" / "texlab.log"
-    assert shown.code == 1
-    assert shown.err == (
-        f"texlab: Something unexpected happened (ZeroDivisionError: one two); the details are in {log}.\n"
-    )
+    # An OSError without a number comes from a library, not from the system.
+    for error in (ZeroDivisionError("one\ntwo"), OSError("one two")):
+        monkeypatch.setattr(cli, "find_commands", lambda error=error: {"fail": Failing(error)})
+        shown = texlab("fail")
+        log = texlab_home / "log" / "texlab.log"
+        assert shown.code == 1
+        what = f"Something unexpected happened ({type(error).__name__}: one two)"
+        assert shown.err == f"texlab: {what}; the details are in {log}.\n"
     assert "Traceback" in log.read_text("utf-8")
     assert "Traceback" not in shown.err
 

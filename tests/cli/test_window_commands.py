@@ -65,6 +65,7 @@ def test_a_screenshot_has_width_first_and_a_known_texture(texlab: Texlab, calls:
         (["--out", "a.jpg"], "out: must be a file name that ends in .png"),
         (["--out", "no/a.png"], "The folder no does not exist"),
         (["--out", "a.png", "--size", "big"], "size: must be"),
+        (["--out", "a.png", "--size", "100000x100"], "size: must be at most 8192 pixels a side"),
         (["--out", "a.png", "--gallery", "oriented-zebr"], "did you mean oriented-zebra"),
         (["--out", "a.png", "--theme", "pink"], "invalid choice"),
     ],

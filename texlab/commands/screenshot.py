@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 HELP = "Save a picture of the window, drawn off screen after its columns have finished."
 ORDER = 60
+LARGEST_SIDE = 8192
 
 
 def configure(parser: Parser) -> None:
@@ -32,6 +33,8 @@ def execute(args: argparse.Namespace) -> int:
         raise ParamError("out", "a file name that ends in .png", args.out)
     out = output_file(args.out)
     height, width = parse_size(args.size)
+    if max(height, width) > LARGEST_SIDE:
+        raise ParamError("size", f"at most {LARGEST_SIDE} pixels a side", args.size)
     if args.gallery is not None:
         from texlab_core.gallery import find_entry
 
