@@ -152,18 +152,19 @@ def palette(theme: Theme) -> QPalette:
     return made
 
 
-def stylesheet(theme: Theme) -> str:
-    """Return the few rules that a palette cannot say."""
+def stylesheet(theme: Theme, points: float) -> str:
+    """Return the few rules that a palette cannot say; titles of docks do not follow the font of the program."""
     return f"""
     QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border}; padding: 4px; }}
     QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 4px 6px; }}
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
-    QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
     QMainWindow > QTabBar::tab {{ padding: 4px 8px; border: none; border-top: 2px solid transparent; }}
     QMainWindow > QTabBar::tab:!selected {{ color: {theme.muted}; }}
     QMainWindow > QTabBar::tab:selected {{ background: {theme.base}; border-top-color: {theme.accent}; }}
     QMainWindow > QTabBar::tab:hover {{ color: {theme.text}; }}
+    QDockWidget {{ font-size: {points:.0f}pt; }}
+    QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
     QFrame#column {{ border: 2px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
     QFrame#column[failed="true"] {{ border-color: {theme.error}; }}
     QFrame#column[chosen="true"] {{ border-color: {theme.accent}; }}
@@ -189,16 +190,16 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     boxes = palette(theme)
     boxes.setColor(QPalette.ColorRole.Base, QColor(theme.border if theme.name == "dark" else theme.base))
     application.setPalette(boxes, "QCheckBox")  # type: ignore[arg-type]  # Qt wants text
-    application.setStyleSheet(stylesheet(theme))
+    application.setStyleSheet(stylesheet(theme, application.font().pointSizeF()))
 
 
-def set_text_size(application: QApplication, points: float) -> None:
+def set_text_size(application: QApplication, points: float, theme: Theme) -> None:
     """Make all texts larger or smaller."""
     font = application.font()
     font.setPointSizeF(points)
     application.setFont(font)
     # Widgets that a style sheet has touched keep their font until it is set again.
-    application.setStyleSheet(application.styleSheet())
+    application.setStyleSheet(stylesheet(theme, points))
 
 
 def configure_pyqtgraph() -> Any:

@@ -326,7 +326,8 @@ class MainWindow(QMainWindow):
     def _set_text_size(self, layout: str) -> None:
         application = QApplication.instance()
         if isinstance(application, QApplication):
-            set_text_size(application, self._points * (TEACH_FACTOR if layout == "teach" else 1.0))
+            points = self._points * (TEACH_FACTOR if layout == "teach" else 1.0)
+            set_text_size(application, points, self.themes.theme)
 
     def _choose_theme(self, choice: Any) -> None:
         self.settings.values["theme"] = choice
