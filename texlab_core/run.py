@@ -8,7 +8,8 @@ import platform
 import threading
 import time
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache as memoize
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -23,7 +24,7 @@ from texlab_core.steps import Output, Result, Step
 from texlab_core.threads import use_workers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping
+    from collections.abc import Callable, Generator
 
 MAX_PIXELS = 64 * 2**20
 MAX_SEED = 2**31 - 1
@@ -139,11 +140,21 @@ def _check_inputs(method: Method, inputs: Mapping[str, Input]) -> None:
 
 
 class AnalysisCache:
-    """Models by analysis key, the most recently used ones; safe to share between threads."""
+    """Models by analysis key, the most recently used ones; safe to share between threads.
 
-    def __init__(self, capacity: int = 16) -> None:
+    Parameters
+    ----------
+    capacity
+        How many models are kept.
+    max_bytes
+        How much their arrays may take together; the newest model is kept whatever it takes.
+    """
+
+    def __init__(self, capacity: int = 16, max_bytes: int = 2**30) -> None:
         self._capacity = capacity
+        self._max_bytes = max_bytes
         self._models: OrderedDict[tuple[object, ...], Any] = OrderedDict()
+        self._sizes: dict[tuple[object, ...], int] = {}
         self._lock = threading.Lock()
 
     def get(self, key: tuple[object, ...]) -> Any | None:
@@ -154,17 +165,38 @@ class AnalysisCache:
             return self._models.get(key)
 
     def put(self, key: tuple[object, ...], model: Any) -> None:
-        """Keep a model, dropping the one that was not used for longest."""
+        """Keep a model, dropping those that were not used for longest."""
+        size = array_bytes(model)
         with self._lock:
-            self._models[key] = model
+            self._models[key], self._sizes[key] = model, size
             self._models.move_to_end(key)
-            while len(self._models) > self._capacity:
-                self._models.popitem(last=False)
+            while len(self._models) > self._capacity or (
+                len(self._models) > 1 and sum(self._sizes.values()) > self._max_bytes
+            ):
+                del self._sizes[self._models.popitem(last=False)[0]]
 
     def clear(self) -> None:
         """Forget everything."""
         with self._lock:
             self._models.clear()
+            self._sizes.clear()
+
+
+def array_bytes(value: object, seen: set[int] | None = None) -> int:
+    """Return how many bytes the arrays in dataclasses and containers take, shared ones counted once."""
+    seen = set() if seen is None else seen
+    if id(value) in seen:
+        return 0
+    seen.add(id(value))
+    if isinstance(value, np.ndarray):
+        return array_bytes(value.base, seen) if isinstance(value.base, np.ndarray) else value.nbytes
+    if is_dataclass(value):
+        return sum(array_bytes(getattr(value, each.name, None), seen) for each in fields(value))
+    if isinstance(value, Mapping):
+        return sum(array_bytes(each, seen) for each in value.values())
+    if isinstance(value, list | tuple | set | frozenset):
+        return sum(array_bytes(each, seen) for each in value)
+    return 0
 
 
 def run(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from texlab_core.images import as_exemplar
 from texlab_core.inputs import DataInput, ImageInput
 from texlab_core.params import Params
 from texlab_core.registry import InputSpec
-from texlab_core.run import MAX_SEED, AnalysisCache, Job, Streams, check_size, run
+from texlab_core.run import MAX_SEED, AnalysisCache, Job, Streams, array_bytes, check_size, run
 from texlab_core.threads import use_workers, workers
 
 if TYPE_CHECKING:
@@ -155,6 +156,42 @@ def test_the_cache_drops_what_was_not_used_for_longest() -> None:
     assert cache.get(("a",)) == 1
     cache.put(("c",), 3)
     assert [cache.get((name,)) for name in "abc"] == [1, None, 3]
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    planes: tuple[Any, ...]
+    table: dict[str, Any]
+
+
+def test_the_bytes_of_a_model_are_those_of_its_arrays() -> None:
+    plane = np.zeros((10, 10), np.float32)
+    model = Model((plane, plane, [plane[:2], None]), {"codes": np.zeros(7, np.uint8), "name": "x" * 1000})
+    assert array_bytes(model) == 400 + 7
+    assert array_bytes(np.frombuffer(b"12345678", np.float32)) == 8
+    loop: list[Any] = [plane]
+    loop.append(loop)
+    assert array_bytes(loop) == 400
+
+
+def test_the_cache_keeps_within_its_bytes_but_always_the_newest() -> None:
+    cache = AnalysisCache(max_bytes=1000)
+    models = [Model((np.zeros(400, np.uint8),), {}) for _ in range(3)]
+    for index, model in enumerate(models[:2]):
+        cache.put((index,), model)
+    assert cache.get((0,)) is models[0]
+    cache.put((2,), models[2])
+    # The second one was not used for longest.
+    assert [cache.get((index,)) for index in range(3)] == [models[0], None, models[2]]
+    cache.put((2,), models[1])
+    assert cache.get((0,)) is models[0]
+    huge = Model((np.zeros(5000, np.uint8),), {})
+    cache.put((3,), huge)
+    assert cache.get((3,)) is huge
+    assert cache.get((0,)) is cache.get((2,)) is None
+    cache.clear()
+    cache.put((0,), models[0])
+    assert cache.get((0,)) is models[0]
 
 
 def test_what_cannot_run_is_refused_before_it_runs(log: Log, exemplar: ImageInput) -> None:
