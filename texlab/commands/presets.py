@@ -70,13 +70,14 @@ def own_presets() -> PresetStore:
 
 def _list(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
     from texlab_core.preset_store import bundled_presets
+    from texlab_core.wording import printable
 
     listed = [(each, "own") for each in store.presets(args.method)]
     listed += [(each, "bundled") for each in bundled_presets(args.method)]
     answer = [{"source": source} | each.to_json() for each, source in listed]
     width = max((len(f"{each.method}/{each.name}") for each, _ in listed), default=0)
     lines = [f"{f'{each.method}/{each.name}':{width}}  {source:7}  {_first_line(each)}" for each, source in listed]
-    lines += [f"not usable: {problem}" for problem in store.problems()]
+    lines += [f"not usable: {printable(problem, 1000)}" for problem in store.problems()]
     return answer, "\n".join(line.rstrip() for line in lines) or "There are no presets yet."
 
 
