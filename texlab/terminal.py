@@ -26,9 +26,16 @@ def complain(sentence: str, program: str = "texlab") -> None:
     What would move the cursor or change colours, in the name of a file say, is shown as an escape.
     """
     line = "".join(each if each.isprintable() else ascii(each)[1:-1] for each in sentence)
-    if sys.stderr is not None:
+    if sys.stderr is None:
+        return
+    try:
+        print(f"{program}: {line}", file=sys.stderr, flush=True)
+    except (OSError, ValueError):
+        # Python would try again when it ends, fail, and change the exit code.
         with contextlib.suppress(OSError, ValueError):
-            print(f"{program}: {line}", file=sys.stderr, flush=True)
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stderr.fileno())
+            os.close(nowhere)
 
 
 def append_to_log(text: str) -> None:
