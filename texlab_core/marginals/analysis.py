@@ -137,12 +137,15 @@ def analyze(
         Targets of every plane and band.
     """
     levels = min(scales, max_levels(image.shape, pyramid))
-    palette = tuple(sorted_sample(image[..., channel]) for channel in range(image.shape[2]))
-    axes, planes = _planes(image)
-    yield image.size
+    palette = []
+    for channel in range(image.shape[2]):
+        palette.append(sorted_sample(image[..., channel]))
+        yield image[..., channel].size
+    axes, planes = yield from _planes(image)
     models = []
     for plane in planes:
         pixels = target(plane, 0.0)
+        yield plane.size
         bands: dict[BandKey, Target] = {}
         floor = pixels.spread * FAINT
         whole = periodic_component(plane) if border == "periodic" else plane
@@ -152,15 +155,16 @@ def analyze(
         else:
             yield from _laplacian_targets(whole, levels, border, expansion(pyramid), floor, bands)
         models.append(PlaneModel(pixels, bands))
-    return TextureModel(axes, tuple(models), palette, levels)
+    return TextureModel(axes, tuple(models), tuple(palette), levels)
 
 
-def _planes(image: FloatImage) -> tuple[ColourAxes | None, list[Plane]]:
+def _planes(image: FloatImage) -> Task[tuple[ColourAxes | None, list[Plane]]]:
     """Return the colour axes and the planes along them; an image of equal channels is its own one plane."""
     if np.all(image == image[..., :1]):
         constant = image.min() == image.max()
         return None, [] if constant else [np.ascontiguousarray(image[..., 0])]
     axes = principal_axes(image)
+    yield image.size
     return axes, list(axes.to_axes(image))
 
 
