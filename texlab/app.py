@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import sys
 from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QCoreApplication, QEventLoop, QTimer
+from PySide6.QtCore import QBuffer, QCoreApplication, QEventLoop, QTimer
 from PySide6.QtWidgets import QApplication
 
 from texlab.settings import Settings
@@ -16,6 +15,7 @@ from texlab.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window import MainWindow
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Iterator
 
     from texlab.explorer import Explorer
@@ -105,6 +105,7 @@ def screenshot(
         Texture of the gallery; None takes the first one.
     """
     from texlab_core.errors import InputError
+    from texlab_core.files import write_whole
 
     app = application()
     settings = Settings()
@@ -118,14 +119,14 @@ def screenshot(
     explorer.start(f"gallery:{gallery}" if gallery else None)
     finished = wait_until_idle(explorer)
     app.processEvents()
-    saved = window.grab().save(os.fspath(out), "PNG")
+    picture = QBuffer()
+    window.grab().save(picture, "PNG")
     window.close()
     window.deleteLater()
     app.processEvents()
     if not finished:
         raise InputError(f"The columns did not finish within {SCREENSHOT_LIMIT_MS // 1000} seconds.")
-    if not saved:
-        raise InputError(f"{out}: the picture could not be written.")
+    write_whole(out, bytes(picture.data().data()))
     return 0
 
 
