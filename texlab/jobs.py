@@ -120,7 +120,10 @@ class Worker(QObject):
         self._oldest = 0
         self._reported = 0
         self._closing = False
-        self._busy = False
+        self._runs = False
+        # Events that wait in the queue of the window's side: what was run is not over before they are told.
+        self._ends = 0
+        self._owes = False
         self._progress: tuple[int, object] | None = None
         self._event.connect(self._receive)
         self._progress_waits.connect(self._receive_progress)
@@ -139,9 +142,15 @@ class Worker(QObject):
 
     @property
     def busy(self) -> bool:
-        """Whether a request is waiting or running."""
+        """Whether a request waits or runs, or what came of it has yet to be told; false again with ``idle``."""
         with self._mail:
-            return self._busy or self._request is not None
+            return self._runs or self._request is not None or self._ends > 0
+
+    @property
+    def occupied(self) -> bool:
+        """Whether the thread itself waits for a place or runs at this moment, whatever has been told of it."""
+        with self._mail:
+            return self._runs or self._request is not None
 
     def submit(self, request: Request, *, patient: bool = False) -> int:
         """Run ``request`` instead of whatever waits or runs; returns its generation number.
@@ -154,6 +163,7 @@ class Worker(QObject):
             if not patient:
                 self._oldest = self._newest
             self._request = request
+            self._owes = True
             self._mail.notify()
         if self._slots is not None:
             self._slots.wake()
@@ -162,13 +172,13 @@ class Worker(QObject):
     def cancel(self) -> None:
         """Stop what runs and forget what waits."""
         with self._mail:
-            running = self._busy or self._request is not None
             self._request = None
             self._newest += 1
             self._oldest = self._reported = self._newest
+            owed, self._owes = self._owes, False
         if self._slots is not None:
             self._slots.wake()
-        if running:
+        if owed:
             self.cancelled.emit()
 
     def leave(self) -> None:
@@ -206,15 +216,16 @@ class Worker(QObject):
                     return
                 request, self._request = self._request, None
                 generation = self._newest
-                self._busy = True
+                self._runs = True
             assert request is not None
             self._run_one(request, Task(self, generation))
             del request
             with self._mail:
-                self._busy = False
-                closing = self._closing
-            if not closing:
-                self._event.emit(_Event(generation, "idle"))
+                self._runs = False
+                if self._closing:
+                    return
+                self._ends += 1
+            self._event.emit(_Event(generation, "idle"))
 
     def _run_one(self, request: Request, task: Task) -> None:
         if self._slots is not None and not self._slots.acquire(task.should_stop):
@@ -250,6 +261,8 @@ class Worker(QObject):
     @Slot(object)
     def _receive(self, event: _Event) -> None:
         if event.kind == "idle":
+            with self._mail:
+                self._ends -= 1
             if not self.busy:
                 self.idle.emit()
             return
@@ -258,7 +271,10 @@ class Worker(QObject):
         self._reported = event.generation
         if event.kind == "started":
             self.started.emit(event.generation)
-        elif event.kind == "finished":
+            return
+        # A newer request is still owed its own end.
+        self._owes = event.generation < self._newest
+        if event.kind == "finished":
             self._receive_progress()
             self.finished.emit(event.value)
         else:

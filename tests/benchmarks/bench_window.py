@@ -160,7 +160,7 @@ def test_cancel(qtbot: Any, tmp_path: Any, method: str) -> None:
             began = time.perf_counter()
             controller.stop_column(column.id)
             # Asked directly: the measure is when the thread is free, not when the window hears of it.
-            while runtime[column.id].worker.busy:
+            while runtime[column.id].worker.occupied:
                 time.sleep(0.0005)
             taken.append(time.perf_counter() - began)
     print(

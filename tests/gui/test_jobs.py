@@ -132,6 +132,38 @@ def test_a_cancel_ends_once_and_frees_the_worker(qtbot: Any, make_worker: Any) -
     assert told == [("cancelled", None), ("finished", 1)]
 
 
+def test_busy_lasts_until_the_end_is_told(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    idle: list[list[tuple[str, Any]]] = []
+    worker.idle.connect(lambda: idle.append(list(told)) or (worker.busy and idle.append([])))
+    worker.submit(lambda task: "end")
+    while worker.occupied:
+        threading.Event().wait(0.001)
+    # This thread has not looked at its queue yet.
+    assert worker.busy
+    assert told == []
+    qtbot.waitUntil(lambda: not worker.busy, timeout=10_000)
+    assert idle == [[("finished", "end")]]
+
+
+def test_a_cancel_while_the_result_is_on_its_way_is_told(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    worker.submit(lambda task: "too late")
+    while worker.occupied:
+        threading.Event().wait(0.001)
+    worker.cancel()
+    qtbot.waitUntil(lambda: not worker.busy, timeout=10_000)
+    assert told == [("cancelled", None)]
+
+
+def test_a_cancel_after_the_end_was_told_says_nothing(qtbot: Any, make_worker: Any) -> None:
+    worker, told = make_worker()
+    worker.finished.connect(lambda value: worker.cancel())
+    worker.submit(lambda task: "end")
+    qtbot.waitUntil(lambda: not worker.busy and bool(told), timeout=10_000)
+    assert told == [("finished", "end")]
+
+
 def test_no_more_run_than_there_are_places(qtbot: Any, make_worker: Any) -> None:
     slots = Slots(1)
     (first, first_told), (second, second_told) = make_worker(slots), make_worker(slots)
