@@ -222,10 +222,10 @@ class Worker(QObject):
             del request
             with self._mail:
                 self._runs = False
-                if self._closing:
-                    return
-                self._ends += 1
-            self._event.emit(_Event(generation, "idle"))
+                closing = self._closing
+                self._ends += not closing
+            if not closing:
+                self._event.emit(_Event(generation, "idle"))
 
     def _run_one(self, request: Request, task: Task) -> None:
         if self._slots is not None and not self._slots.acquire(task.should_stop):
