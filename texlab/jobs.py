@@ -68,7 +68,7 @@ class Slots:
 @dataclass(frozen=True, slots=True)
 class _Event:
     generation: int
-    kind: Literal["started", "finished", "failed", "idle"]
+    kind: Literal["started", "finished", "failed", "idle", "progress"]
     value: Any = None
 
 
@@ -107,7 +107,6 @@ class Worker(QObject):
     cancelled = Signal()
     idle = Signal()
     _event = Signal(object)
-    _progress_waits = Signal()
 
     def __init__(self, name: str, slots: Slots | None = None, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -126,7 +125,6 @@ class Worker(QObject):
         self._owes = False
         self._progress: tuple[int, object] | None = None
         self._event.connect(self._receive)
-        self._progress_waits.connect(self._receive_progress)
         self._thread = threading.Thread(target=self._work, name=f"texlab-{name}", daemon=True)
         self._thread.start()
 
@@ -222,29 +220,27 @@ class Worker(QObject):
             del request
             with self._mail:
                 self._runs = False
-                closing = self._closing
-                self._ends += not closing
-            if not closing:
-                self._event.emit(_Event(generation, "idle"))
+                self._ends += 1
+            self._tell(_Event(generation, "idle"))
 
     def _run_one(self, request: Request, task: Task) -> None:
         if self._slots is not None and not self._slots.acquire(task.should_stop):
             return
         try:
-            self._event.emit(_Event(task.generation, "started"))
+            self._tell(_Event(task.generation, "started"))
             value = request(task)
         except Cancelled:
             return
         except (InputError, OSError) as error:
-            self._event.emit(_Event(task.generation, "failed", str(error)))
+            self._tell(_Event(task.generation, "failed", str(error)))
         except MemoryError:
-            self._event.emit(_Event(task.generation, "failed", "There is not enough memory for this size."))
+            self._tell(_Event(task.generation, "failed", "There is not enough memory for this size."))
         except Exception as error:
             log.exception("A background task failed.")
             text = f"{type(error).__name__}: {error}. The log has the details."
-            self._event.emit(_Event(task.generation, "failed", text))
+            self._tell(_Event(task.generation, "failed", text))
         else:
-            self._event.emit(_Event(task.generation, "finished", value))
+            self._tell(_Event(task.generation, "finished", value))
         finally:
             if self._slots is not None:
                 self._slots.release()
@@ -254,7 +250,17 @@ class Worker(QObject):
             pending = self._progress is not None
             self._progress = (generation, value)
         if not pending:
-            self._progress_waits.emit()
+            self._tell(_Event(generation, "progress"))
+
+    def _tell(self, event: _Event) -> None:
+        """Post an event to the window's side."""
+        try:
+            if not self._closing:
+                self._event.emit(event)
+        except RuntimeError:
+            # What could not be stopped in time outlives its worker's Qt half; nobody listens any more.
+            if not self._closing:
+                raise
 
     # The window's side.
 
@@ -265,6 +271,9 @@ class Worker(QObject):
                 self._ends -= 1
             if not self.busy:
                 self.idle.emit()
+            return
+        if event.kind == "progress":
+            self._receive_progress()
             return
         if event.generation < self._oldest or self._closing:
             return
@@ -280,7 +289,6 @@ class Worker(QObject):
         else:
             self.failed.emit(event.value)
 
-    @Slot()
     def _receive_progress(self) -> None:
         with self._mail:
             waiting, self._progress = self._progress, None

@@ -6,6 +6,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import shiboken6
 
 from texlab.jobs import Slots, Task, Worker
 from texlab_core.errors import Cancelled, InputError
@@ -200,3 +201,24 @@ def test_closing_stops_what_runs(make_worker: Any) -> None:
     worker.close()
     assert not any(thread.name == "texlab-test-0" for thread in threading.enumerate())
     assert told == []
+
+
+def test_a_thread_that_could_not_be_stopped_in_time_ends_quietly(qapp: Any, caplog: Any) -> None:
+    worker = Worker("stubborn")
+    started, hold = threading.Event(), threading.Event()
+
+    def work(task: Task) -> None:
+        started.set()
+        assert hold.wait(10)
+        task.progress(1)
+
+    worker.submit(work)
+    assert started.wait(10)
+    thread = next(each for each in threading.enumerate() if each.name == "texlab-stubborn")
+    worker.close(timeout_s=0.01)
+    assert "did not end within" in caplog.text
+    # Its Qt half goes first; an exception in the thread would fail this test.
+    shiboken6.delete(worker)
+    hold.set()
+    thread.join(10)
+    assert not thread.is_alive()
