@@ -9,11 +9,12 @@ from PySide6.QtCore import QObject, QTimer
 
 from texlab.jobs import Worker
 from texlab.kept_exemplar import has_no_home, keep, kept_path
+from texlab.kept_inputs import forget_others, keep_inputs, kept_folder
 from texlab.settings import session_to_json
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from texlab.session import Sample, Session
+    from texlab.session import Sample, Session, State
     from texlab.settings import Settings
     from texlab_core.inputs import ImageInput
 
@@ -48,10 +49,10 @@ class Autosave(QObject):
             # The first exemplar is still being read: what was saved before is worth more.
             return
         self.remember()
-        text = self._settings.to_json()
-        self._worker.submit(lambda task: self._write(text, sample), patient=True)
+        text, state = self._settings.to_json(), self._session.state
+        self._worker.submit(lambda task: self._write(text, sample, state), patient=True)
 
-    def _write(self, text: str, sample: Sample) -> None:
+    def _write(self, text: str, sample: Sample, state: State) -> None:
         """Write everything (in the worker's thread, or when that has ended)."""
         if has_no_home(sample) and sample.source is not self._kept:
             try:
@@ -59,7 +60,11 @@ class Autosave(QObject):
             except InputError as error:
                 log.warning("The exemplar could not be kept: %s", error)
             self._kept = sample.source
+        inputs = [each for column in state.columns for _, each in column.inputs]
+        # The settings on the disk never name a file that is not there.
+        keep_inputs(inputs, kept_folder())
         self._settings.write(text)
+        forget_others(inputs, kept_folder())
 
     def close(self) -> None:
         """End the thread, then save for the last time."""
@@ -70,4 +75,4 @@ class Autosave(QObject):
             self._settings.save()
             return
         self.remember()
-        self._write(self._settings.to_json(), sample)
+        self._write(self._settings.to_json(), sample, self._session.state)

@@ -15,8 +15,11 @@ from texlab_core.files import write_whole
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from texlab.session import Sample
     from texlab_core.inputs import ImageInput
+    from texlab_core.steps import FloatImage
 
 FILE_NAME = "exemplar.npy"
 
@@ -47,16 +50,19 @@ def keep(image: ImageInput, path: Path) -> None:
     InputError
         When the file cannot be written.
     """
-    pixels = image.pixels
-    levels = np.rint(pixels * 255).astype(np.uint8)
-    exact = np.array_equal((levels / np.float32(255)).astype(np.float32), pixels)
     data = io.BytesIO()
-    np.save(data, levels if exact else pixels, allow_pickle=False)
+    np.save(data, compact(image.pixels), allow_pickle=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{path.parent}: cannot be made ({error.strerror}).") from error
     write_whole(path, data.getvalue())
+
+
+def compact(pixels: FloatImage) -> FloatImage | NDArray[np.uint8]:
+    """Return pixels in 8 bits where these say the same, else as they are."""
+    levels = np.rint(pixels * 255).astype(np.uint8)
+    return levels if np.array_equal((levels / np.float32(255)).astype(np.float32), pixels) else pixels
 
 
 def load(kept: Kept) -> ImageInput:

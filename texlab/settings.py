@@ -6,16 +6,23 @@ import json
 import logging
 from typing import TYPE_CHECKING, Any
 
+from texlab.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.paths import config_dir
 from texlab_core.errors import InputError
 from texlab_core.files import write_whole
-from texlab_core.inputs import DataInput
-from texlab_core.registry import methods
+from texlab_core.registry import EXEMPLAR, methods
 from texlab_core.run import check_seed, check_size
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.session import Column, State
+    from texlab_core.inputs import Input
+    from texlab_core.params import Params
     from texlab_core.registry import Method
+
+    # Method, parameters, further inputs and the column's own size.
+    SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, int] | None]
 
 log = logging.getLogger(__name__)
 
@@ -84,7 +91,7 @@ class Settings:
 
 
 def session_to_json(state: State, selected: int) -> dict[str, Any]:
-    """Return the session as JSON: names and numbers, not pixels."""
+    """Return the session as JSON: names, numbers and hashes, not pixels."""
     sample = None
     if state.sample is not None:
         crop = state.sample.crop
@@ -105,33 +112,45 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
 
 
 def column_to_json(column: Column) -> dict[str, Any]:
-    """Return a column as JSON; of its further inputs, those that are small documents (a code)."""
+    """Return a column as JSON; of its further inputs, documents whole and of arrays what leads to their files."""
     saved: dict[str, Any] = {"method": column.method, "params": column.params.to_json()}
-    documents = {name: each for name, each in column.inputs if isinstance(each, DataInput)}
-    if documents:
-        saved["inputs"] = {name: {"name": each.name, "data": each.data} for name, each in documents.items()}
+    if column.inputs:
+        saved["inputs"] = {name: input_to_json(each) for name, each in column.inputs}
+    if column.size is not None:
+        saved["size"] = list(column.size)
     return saved
 
 
-def _inputs_from_json(saved: Any, method: Method) -> tuple[tuple[str, DataInput], ...]:
-    known = {spec.name for spec in method.inputs if spec.kind == "data"}
-    return tuple(
-        (name, DataInput(each["data"], str(each["name"]))) for name, each in saved.items() if name in known
-    )
+def columns_from_json(data: Any, tell: Callable[[str], None] = log.warning) -> list[SavedColumn]:
+    """Return the columns of a saved session; what does not fit any more is left out.
 
-
-def columns_from_json(data: Any) -> list[tuple[str, Any, tuple[tuple[str, DataInput], ...]]]:
-    """Return (method, parameters, inputs) of a saved session; what does not fit any more is left out."""
-    found = []
+    A column whose further input is damaged or gone comes without it, and ``tell(sentence)`` says so.
+    """
+    found: list[SavedColumn] = []
     listed = data.get("columns") if isinstance(data, dict) else None
     for each in (listed if isinstance(listed, list) else [])[:MAX_COLUMNS]:
         try:
             method = methods()[each["method"]]
-            inputs = _inputs_from_json(each.get("inputs", {}), method)
-            found.append((method.id, method.params.from_json(each["params"]), inputs))
+            params = method.params.from_json(each["params"])
+            size = None if each.get("size") is None else check_size(tuple(each["size"]))
+            inputs = _inputs_from_json(each.get("inputs", {}), method, tell)
+            found.append((method.id, params, inputs, size))
         except (InputError, AttributeError, KeyError, TypeError, ValueError) as error:
             log.warning("A column of the last session was left out: %s", error)
     return found
+
+
+def _inputs_from_json(saved: Any, method: Method, tell: Callable[[str], None]) -> tuple[tuple[str, Input], ...]:
+    inputs: list[tuple[str, Input]] = []
+    for spec in method.inputs:
+        if spec.name not in saved or spec.name == EXEMPLAR.name:
+            continue
+        try:
+            inputs.append((spec.name, load_input(saved[spec.name], spec.kind, kept_folder())))
+        except InputError as error:
+            log.warning("The input %s of the last session was left out: %s", spec.name, error)
+            tell(f"The {spec.name} of {method.title} could not be brought back; the column starts without it.")
+    return tuple(inputs)
 
 
 def seed_and_size(data: Any) -> tuple[int, tuple[int, int]]:

@@ -13,9 +13,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.fill import FillDock, read_mask
+from texlab import kept_inputs
+from texlab.docks.fill import FillDock, mask_input, read_mask
+from texlab.kept_inputs import input_to_json, keep_inputs, load_input
 from texlab.views.mask_canvas import paint_line
 from texlab_core.errors import InputError
+from texlab_core.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
 from texlab_core.registry import methods
 
 if TYPE_CHECKING:
@@ -149,3 +152,98 @@ def test_a_picture_grows_outward(qtbot: Any, filling: tuple[Explorer, FillDock])
         if np.array_equal(image[row : row + 40, column : column + 48], original)
     ]
     assert len(inner) == 1
+
+
+# What is kept with the session.
+
+
+@pytest.fixture
+def filled(qtbot: Any, filling: tuple[Explorer, FillDock]) -> tuple[Explorer, int]:
+    """A window in which a hole was painted and filled, and the column that did."""
+    explorer, dock = filling
+    canvas = dock.canvas
+    dock.radius.setValue(3)
+    drag(qtbot, canvas.viewport(), [canvas.to_widget(20, column).toPoint() for column in (18, 22, 28)])
+    qtbot.mouseClick(dock.fill_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(ids(explorer)) == 2, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    return explorer, ids(explorer)[1]
+
+
+def kept_files(home: Path) -> list[Path]:
+    return sorted((home / "config" / "inputs").glob("*"))
+
+
+def test_a_filled_hole_comes_back(
+    filled: tuple[Explorer, int], open_window: Callable[..., Explorer], texlab_home: Path
+) -> None:
+    explorer, column_id = filled
+    column = explorer.session.state.column(column_id)
+    image = result_image(explorer, column_id)
+    explorer.window.close()
+    assert [path.stem for path in kept_files(texlab_home)] == [dict(column.inputs)["mask"].sha256]
+    again = open_window(None)
+    back = again.session.state.columns[1]
+    assert back.size == column.size == (40, 48)
+    assert np.array_equal(dict(back.inputs)["mask"].pixels, dict(column.inputs)["mask"].pixels)
+    assert dict(back.inputs)["mask"].name == "painted hole"
+    assert np.array_equal(result_image(again, back.id), image)
+    assert not again.window.message_bar.isVisible()
+    # What no column has any more is not kept.
+    again.session.remove_column(back.id)
+    again.window.close()
+    assert kept_files(texlab_home) == []
+
+
+@pytest.mark.parametrize("damage", ["cut", "flipped", "gone", "other"])
+def test_a_damaged_mask_is_left_out_and_said(
+    filled: tuple[Explorer, int],
+    open_window: Callable[..., Explorer],
+    texlab_home: Path,
+    caplog: pytest.LogCaptureFixture,
+    damage: str,
+) -> None:
+    explorer, _ = filled
+    explorer.window.close()
+    (path,) = kept_files(texlab_home)
+    data = path.read_bytes()
+    if damage == "cut":
+        path.write_bytes(data[: len(data) // 2])
+    elif damage == "flipped":
+        path.write_bytes(data[:200] + bytes([data[200] ^ 1]) + data[201:])
+    elif damage == "gone":
+        path.unlink()
+    else:
+        np.savez(path, pixels=np.zeros((40, 48, 1), np.uint8))
+    again = open_window(None)
+    back = again.session.state.columns[1]
+    assert back.inputs == ()
+    assert "The mask of Efros-Leung could not be brought back; the column starts without it." in caplog.text
+
+
+def test_inputs_beyond_the_limit_are_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    small, large = (mask_input(np.ones(size, np.bool_), "mask") for size in ((8, 8), (100, 100)))
+    monkeypatch.setattr(kept_inputs, "MAX_BYTES", 2000)
+    keep_inputs([large, small], tmp_path)
+    assert [path.stem for path in tmp_path.iterdir()] == [small.sha256]
+    monkeypatch.setattr(kept_inputs, "MAX_BYTES", 10)
+    with pytest.raises(InputError, match="too large"):
+        load_input(input_to_json(small), "image", tmp_path)
+
+
+def test_every_kind_of_input_is_kept_exactly(tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    fine = random.random((9, 7, 3)).astype(np.float32)
+    start = ImageInput(fine, "result", hash_arrays({"pixels": fine}))
+    state = ArraysInput({"known": np.eye(4, dtype=np.bool_), "at": np.arange(3)}, "state")
+    code = DataInput({"numbers": [1, 2.5]}, "code")
+    keep_inputs([start, state, code], tmp_path)
+    back = load_input(input_to_json(start), "image", tmp_path)
+    assert isinstance(back, ImageInput)
+    assert np.array_equal(back.pixels, fine)
+    assert load_input(input_to_json(state), "arrays", tmp_path).sha256 == state.sha256
+    assert load_input(input_to_json(code), "data", tmp_path).sha256 == code.sha256
+    # A file is data: it is found by its hash alone, and names no other place.
+    for saved in ({"name": "x"}, {"name": "x", "sha256": "../x"}, {"sha256": start.sha256}, [], None):
+        with pytest.raises(InputError):
+            load_input(saved, "image", tmp_path)
