@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from texlab_core.transforms.steerable import BandKey
 
 SPREADS = 3.0
+# Images lie in [0, 1]: below a fortieth of a step of 8 bits there is rounding and nothing to see.
+SMALLEST_LIMIT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -178,7 +180,8 @@ class PyramidPictures:
 def band_scales(bands: tuple[Band, ...], request: PyramidRequest) -> dict[BandKey, Scale]:
     """Return the colour scale of every band, from the exemplar's.
 
-    Signed bands are symmetric around zero up to three standard deviations: their own, or the largest of all.
+    Signed bands are symmetric around zero up to three standard deviations: their own, or the largest of all; a
+    band that holds nothing but rounding gets no colours.
     Magnitudes begin at zero. Low-pass bands are gray from 0 to 1; those of a principal axis as far as three
     standard deviations go.
     """
@@ -187,7 +190,7 @@ def band_scales(bands: tuple[Band, ...], request: PyramidRequest) -> dict[BandKe
     scales = {}
     for band in bands:
         spread = largest if request.common and band.span != "gray" else spreads[band.key]
-        limit = SPREADS * spread or 1.0
+        limit = max(SPREADS * spread, SMALLEST_LIMIT)
         if band.span == "positive":
             scales[band.key] = Scale(0.0, limit)
         elif band.signed or request.channel.startswith("axis"):
