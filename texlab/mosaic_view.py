@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QGraphicsRectItem, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
@@ -142,6 +142,14 @@ class MosaicView(QWidget):
         """Show the focus at the frame."""
         super().focusOutEvent(event)
         self._paint_frame()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Let the labels follow the size of the program's text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            for label in self._labels:
+                label.setFont(self._label_font())
+            self._choose_labels()
 
     def _make_labels(self, count: int) -> None:
         while len(self._labels) > count:

@@ -29,7 +29,6 @@ pg = configure_pyqtgraph()
 Role = Literal["exemplar", "result", "third", "good", "warning", "error", "muted", "text", "accent"]
 Line = Literal["solid", "dash", "dot"]
 ROOM_FOR_LABELS = 170
-TICK_ROOM = 20
 LINES = {"solid": Qt.PenStyle.SolidLine, "dash": Qt.PenStyle.DashLine, "dot": Qt.PenStyle.DotLine}
 # Colours and line styles for any number of series: no two of the first nine look alike without colour either.
 SERIES: tuple[tuple[Role, Line], ...] = (
@@ -168,7 +167,7 @@ class Plot(QWidget):
         self._texts.append((item, role))
         self.view.addItem(item, ignoreBounds=True)
         if self._theme is not None:
-            item.setColor(QColor(getattr(self._theme, role)))
+            self._paint_text(item, role, self._theme)
         return item
 
     def set_labels(self, x: str, y: str) -> None:
@@ -192,7 +191,8 @@ class Plot(QWidget):
             return
         low, high = self.view.viewRange()[1]
         height = max(self.view.height(), 1.0)
-        axis.setTicks([log_ticks(low, high, TICK_ROOM * (high - low) / height)])
+        room = 1.25 * self.fontMetrics().height()
+        axis.setTicks([log_ticks(low, high, room * (high - low) / height)])
 
     def fit(self, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
         """Show a range, or everything where it is left out."""
@@ -211,15 +211,24 @@ class Plot(QWidget):
         for series in self._series:
             self._paint(series, theme)
         for item, role in self._texts:
-            item.setColor(QColor(getattr(theme, role)))
+            self._paint_text(item, role, theme)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Let axes and texts follow the size of the program's text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange and self._theme is not None:
+            self.set_theme(self._theme)
+            self._place_ticks()
 
     def _paint_axes(self, theme: Theme) -> None:
+        size = f"{self.font().pointSizeF():.1f}pt"
         for side, words in zip(("bottom", "left"), self._labels, strict=True):
             axis = self.axes[side]
             axis.setPen(pg.mkPen(theme.border))
             axis.setTextPen(pg.mkPen(theme.muted))
             axis.setStyle(tickLength=-4, maxTickLevel=0)
-            axis.setLabel(words or None, color=theme.muted)
+            axis.setTickFont(self.font())
+            axis.setLabel(words or None, **{"color": theme.muted, "font-size": size})
             axis.showLabel(bool(words) and self.height() >= ROOM_FOR_LABELS)
 
     def _paint(self, series: _Series, theme: Theme) -> None:
@@ -229,6 +238,10 @@ class Plot(QWidget):
             wash = QColor(colour)
             wash.setAlpha(60)
             series.item.setBrush(pg.mkBrush(wash))
+
+    def _paint_text(self, item: Any, role: Role, theme: Theme) -> None:
+        item.setColor(QColor(getattr(theme, role)))
+        item.setFont(self.font())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Tell where the cursor is."""

@@ -330,6 +330,34 @@ def test_magnitudes_are_gray_from_zero(dock, scene):
     assert np.array_equal(tile, colouring.gray(band.plane, 0, limit))
 
 
+@pytest.mark.parametrize("kind", ["steerable", "laplacian", "oriented", "gabor", "gabor magnitude", "filter bank"])
+def test_rounding_is_not_coloured(dock, kind):
+    constant = np.full((64, 64, 3), 0.37, np.float32)
+    scene = scene_of(column_of(constant), exemplar=constant)
+    feed(dock, scene)
+    set_choice(dock.pyramid.kind, kind)
+    answer = feed(dock, scene)
+    for band, cell in zip(answer.exemplar.bands, answer.exemplar.layout.cells, strict=True):
+        tile = answer.exemplar.picture[cell.top : cell.top + cell.height, cell.left : cell.left + cell.width]
+        if band.span != "gray":
+            nothing = (
+                colouring.gray(np.zeros(1), 0, 1)
+                if band.span == "positive"
+                else colouring.diverging(np.zeros(1), 1)
+            )
+            assert np.abs(tile.astype(int) - nothing[0]).max() <= 3, band.title
+
+
+def test_labels_follow_the_size_of_the_text(dock, scene):
+    feed(dock, scene)
+    label = dock.exemplar._labels[0]
+    before = label.textItem.font().pointSizeF()
+    font = dock.font()
+    font.setPointSizeF(1.5 * font.pointSizeF())
+    dock.setFont(font)
+    assert label.textItem.font().pointSizeF() == pytest.approx(1.5 * before)
+
+
 def test_gabor_is_not_computed_again_for_other_scales(dock, images):
     feed(dock, scene_of(column_of(images[1]), exemplar=images[0]))
     set_choice(dock.pyramid.kind, "gabor")
