@@ -30,7 +30,8 @@ settings.register_profile("texlab", deadline=None, derandomize=True, database=No
 settings.load_profile("texlab")
 
 pytest_plugins = ["tests.coverage_floor"]
-PATIENCE_S = 2.0
+PATIENCE_S = 20.0
+MOVE_S = 2.0
 
 
 @pytest.fixture(autouse=True)
@@ -123,10 +124,33 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 
 def _move_mouse(widget: QWidget, pos: QPoint, delay: int = -1) -> None:
     """Move the pointer and wait until the server, which answers later, has told of it."""
+    from PySide6.QtCore import QEvent, QObject
+    from PySide6.QtGui import QCursor
     from PySide6.QtTest import QTest
+    from PySide6.QtWidgets import QApplication
 
-    QTest.mouseMove(widget, pos, delay)
-    QTest.qWait(50)
+    target = widget.mapToGlobal(pos)
+    told: list[QPoint] = []
+
+    class Listener(QObject):
+        def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+            if event.type() == QEvent.Type.MouseMove:
+                told.append(event.globalPosition().toPoint())  # type: ignore[attr-defined]
+            return False
+
+    listener = Listener()
+    app = QApplication.instance()
+    assert app is not None
+    there = QCursor.pos() == target
+    app.installEventFilter(listener)
+    try:
+        QTest.mouseMove(widget, pos, delay)
+        # A pointer that is there already does not move, and beside the windows nothing is told.
+        limit = time.monotonic() + MOVE_S
+        while not there and target not in told and time.monotonic() < limit:
+            QTest.qWait(1)
+    finally:
+        app.removeEventFilter(listener)
 
 
 def _persists(left: Callable[[], list[str]]) -> bool:

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from mouse import drag, handle_point, move  # noqa: F401
 from PIL import Image
+from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
 from texlab import app as texlab_app
 from texlab.settings import Settings
 from texlab.theme import ThemeSource
 from texlab_core.registry import methods
+from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,7 +23,27 @@ if TYPE_CHECKING:
 
     from texlab.explorer import Explorer
 
-PATIENCE_MS = 60_000
+PATIENCE_MS = 180_000
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled() -> None:
+    """Compile the methods' kernels before any test waits for one: in a new clone that takes most of a minute."""
+    warm_up()
+
+
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give up late, whatever a test asks for: waits end with what they wait for, however busy the machine is."""
+    for name in ("waitUntil", "waitSignal", "waitSignals", "waitExposed", "waitActive"):
+        monkeypatch.setattr(QtBot, name, _patient(getattr(QtBot, name)))
+
+
+def _patient(wait: Callable[..., Any]) -> Callable[..., Any]:
+    def longer(self: QtBot, what: Any, *, timeout: int = 0, **options: Any) -> Any:
+        return wait(self, what, timeout=max(timeout, PATIENCE_MS), **options)
+
+    return longer
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ def test_the_page_that_was_asked_for_is_shown_at_once_and_stays(window, qtbot):
     window.open_page("de-bonet")
     qtbot.waitExposed(window)
     window.list.setFocus()
-    qtbot.wait(20)
+    qtbot.wait(60)
     assert window.browser.page == "de-bonet"
     assert window.list.currentItem().data(256) == "de-bonet"
     assert "multiresolution" in window.browser.toPlainText().lower()

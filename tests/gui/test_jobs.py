@@ -50,7 +50,7 @@ def test_the_newest_of_many_requests_is_the_only_one_told(qtbot: Any, make_worke
     worker, told = make_worker()
     started = threading.Event()
     worker.submit(until_stopped(started))
-    assert started.wait(10)
+    assert started.wait(60)
     ran = []
     for number in range(50):
         worker.submit(lambda task, number=number: ran.append(number) or number)
@@ -70,7 +70,7 @@ def test_a_result_that_was_replaced_on_its_way_is_dropped(qtbot: Any, make_worke
         return "first"
 
     worker.submit(first)
-    assert done.wait(10)
+    assert done.wait(60)
     # The event of the first result waits in the queue of this thread, which has not looked yet.
     worker.submit(lambda task: "second")
     qtbot.waitUntil(lambda: ("finished", "second") in told, timeout=10_000)
@@ -124,7 +124,7 @@ def test_a_cancel_ends_once_and_frees_the_worker(qtbot: Any, make_worker: Any) -
     worker, told = make_worker()
     started = threading.Event()
     worker.submit(until_stopped(started))
-    assert started.wait(10)
+    assert started.wait(60)
     worker.cancel()
     qtbot.waitUntil(lambda: not worker.busy, timeout=10_000)
     worker.cancel()
@@ -170,7 +170,7 @@ def test_no_more_run_than_there_are_places(qtbot: Any, make_worker: Any) -> None
     (first, first_told), (second, second_told) = make_worker(slots), make_worker(slots)
     started = threading.Event()
     first.submit(until_stopped(started))
-    assert started.wait(10)
+    assert started.wait(60)
     ran = threading.Event()
     second.submit(lambda task: ran.set())
     assert not ran.wait(0.05)
@@ -185,7 +185,7 @@ def test_one_that_waits_for_a_place_can_be_cancelled(qtbot: Any, make_worker: An
     (first, _), (second, told) = make_worker(slots), make_worker(slots)
     started = threading.Event()
     first.submit(until_stopped(started))
-    assert started.wait(10)
+    assert started.wait(60)
     second.submit(lambda task: "never")
     second.cancel()
     qtbot.waitUntil(lambda: not second.busy, timeout=10_000)
@@ -197,7 +197,7 @@ def test_closing_stops_what_runs(make_worker: Any) -> None:
     worker, told = make_worker()
     started = threading.Event()
     worker.submit(until_stopped(started))
-    assert started.wait(10)
+    assert started.wait(60)
     worker.close()
     assert not any(thread.name == "texlab-test-0" for thread in threading.enumerate())
     assert told == []
@@ -209,16 +209,16 @@ def test_a_thread_that_could_not_be_stopped_in_time_ends_quietly(qapp: Any, capl
 
     def work(task: Task) -> None:
         started.set()
-        assert hold.wait(10)
+        assert hold.wait(60)
         task.progress(1)
 
     worker.submit(work)
-    assert started.wait(10)
+    assert started.wait(60)
     thread = next(each for each in threading.enumerate() if each.name == "texlab-stubborn")
     worker.close(timeout_s=0.01)
     assert "did not end within" in caplog.text
     # Its Qt half goes first; an exception in the thread would fail this test.
     shiboken6.delete(worker)
     hold.set()
-    thread.join(10)
+    thread.join(60)
     assert not thread.is_alive()

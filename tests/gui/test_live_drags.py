@@ -46,7 +46,7 @@ def test_a_patient_request_lets_the_running_one_finish(worker, qtbot):
     worker.finished.connect(lambda value: finished.append((value, worker.behind)))
     first, second, third = Gate(1), Gate(2), Gate(3)
     worker.submit(first)
-    assert first.started.wait(5)
+    assert first.started.wait(60)
     worker.submit(second, patient=True)
     worker.submit(third, patient=True)
     for gate in (first, second, third):
@@ -62,7 +62,7 @@ def test_an_impatient_request_stops_what_runs(worker, qtbot):
     worker.finished.connect(finished.append)
     first, second = Gate(1), Gate(2)
     worker.submit(first)
-    assert first.started.wait(5)
+    assert first.started.wait(60)
     worker.submit(second)
     second.opened.set()
     qtbot.waitUntil(lambda: bool(finished))
@@ -74,7 +74,7 @@ def test_cancel_forgets_patient_requests_too(worker, qtbot):
     worker.finished.connect(finished.append)
     first, second = Gate(1), Gate(2)
     worker.submit(first)
-    assert first.started.wait(5)
+    assert first.started.wait(60)
     worker.submit(second, patient=True)
     with qtbot.waitSignal(worker.cancelled):
         worker.cancel()
