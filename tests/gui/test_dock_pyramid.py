@@ -352,9 +352,10 @@ def test_labels_follow_the_size_of_the_text(dock, scene):
     feed(dock, scene)
     label = dock.exemplar._labels[0]
     before = label.textItem.font().pointSizeF()
-    font = dock.font()
+    # On the mosaic itself: under a style sheet of the application, fonts of parents are not passed on.
+    font = dock.exemplar.font()
     font.setPointSizeF(1.5 * font.pointSizeF())
-    dock.setFont(font)
+    dock.exemplar.setFont(font)
     assert label.textItem.font().pointSizeF() == pytest.approx(1.5 * before)
 
 
