@@ -19,6 +19,7 @@ from texlab import session as session_module
 from texlab.app import closed_by_signals
 from texlab.jobs import Worker
 from texlab.kept_exemplar import Kept, keep, load
+from texlab.plots import Plot
 from texlab.session import Sample, Session
 from texlab.settings import Settings
 from texlab.views.status_line import LINES, StatusLine
@@ -156,6 +157,29 @@ def test_teach_enlarges_the_text_and_the_room_for_it(qtbot: Any, explorer: Explo
     assert line.font().pointSizeF() == pytest.approx(before)
 
 
+def test_teach_enlarges_the_text_in_plots_and_mosaics(qtbot: Any, explorer: Explorer) -> None:
+    window = explorer.window
+    window.docks["histograms"].raise_()
+    wait_idle(qtbot, explorer)
+    plot = window.docks["histograms"].widget().findChild(Plot)
+    (label, *_) = window.docks["pyramid"].widget().exemplar._labels
+    axis = plot.axes["bottom"]
+
+    def sizes() -> tuple[float, float]:
+        return axis.style["tickFont"].pointSizeF(), label.textItem.font().pointSizeF()
+
+    before, height = sizes(), axis.height()
+    try:
+        window.actions_by_name["layout-teach"].trigger()
+        assert sizes() == pytest.approx([1.35 * size for size in before])
+        window.docks["histograms"].raise_()
+        qtbot.waitUntil(lambda: axis.height() > height, timeout=5_000)
+    finally:
+        window.actions_by_name["layout-explore"].trigger()
+    assert sizes() == pytest.approx(before)
+    wait_idle(qtbot, explorer)
+
+
 def test_a_layout_brings_docks_home(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
     docks = window.docks
@@ -203,11 +227,12 @@ def test_a_new_column_shows_the_place_and_scale_of_the_others(qtbot: Any, explor
     wait_idle(qtbot, explorer)
     one, new = (explorer.workspace.columns[each].pane for each in ids(explorer)[:2])
     scale = one.shown_scale
+    before = one.width()
     explorer.window.resize(1500, 900)
-    qtbot.wait(50)
+    qtbot.waitUntil(lambda: one.width() != before)
+    qtbot.waitUntil(lambda: new.view_rect().center() == one.view_rect().center())
     for pane in (one, new):
         assert pane.shown_scale == pytest.approx(scale)
-        assert pane.view_rect().center() == one.view_rect().center()
     qtbot.keyClick(explorer.window, Qt.Key.Key_1)
     assert one.shown_scale == pytest.approx(1 / one.devicePixelRatioF())
     qtbot.keyClick(explorer.window, Qt.Key.Key_F)
@@ -415,11 +440,11 @@ def test_a_worker_can_be_left_without_waiting(qtbot: Any) -> None:
 
     def work(task: Any) -> None:
         started.set()
-        assert let_go.wait(20)
+        assert let_go.wait(60)
 
     worker = Worker("stubborn")
     worker.submit(work)
-    assert started.wait(20)
+    assert started.wait(60)
     worker.leave()
     assert not worker.ended
     let_go.set()
