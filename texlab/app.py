@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from PySide6.QtCore import QBuffer, QCoreApplication, QEventLoop, QTimer
 from PySide6.QtWidgets import QApplication
 
-from texlab.settings import Settings
+from texlab.storage.settings import Settings
 from texlab.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window import MainWindow
 

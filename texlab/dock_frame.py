@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.docks.base import Dock
-from texlab.flow_layout import FlowLayout
 from texlab.theme import DARK, LIGHT
+from texlab.widgets.flow_layout import FlowLayout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

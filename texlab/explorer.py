@@ -13,7 +13,6 @@ from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog, QMenu, QMessageBox
 
-from texlab.autosave import Autosave
 from texlab.controller import Controller, Prepared
 from texlab.crash import CrashHandler
 from texlab.dock_host import DockHost
@@ -26,18 +25,19 @@ from texlab.overlays import Overlays
 from texlab.pictures import describe_pixel, to_picture
 from texlab.preset_manager import PresetManager
 from texlab.session import Column, Session, State
-from texlab.settings import columns_from_json, seed_and_size
+from texlab.storage.autosave import Autosave
+from texlab.storage.settings import columns_from_json, seed_and_size
 from texlab.views.help import HelpWindow
 from texlab.views.palette import CommandPalette
 from texlab.views.workspace import Workspace
 from texlab.window import source_of
-from texlab_core.comparison import FIG_8, FIRST_SIGHT
 from texlab_core.gallery import gallery
 from texlab_core.inputs import Crop
 from texlab_core.multiresolution.thresholds import ThresholdTable
 from texlab_core.params import describe
 from texlab_core.registry import methods
 from texlab_core.run import MAX_SEED, versions
+from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
 from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from texlab.docks.base import Dock
     from texlab.scene import Mark, Picture, Scene
-    from texlab.settings import Settings
+    from texlab.storage.settings import Settings
     from texlab.theme import ThemeSource
     from texlab.views.column import ColumnView
     from texlab.window import MainWindow

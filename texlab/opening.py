@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from texlab.kept_exemplar import Kept, kept_path, load
 from texlab.session import Column, Sample, Session, State
+from texlab.storage.kept_exemplar import Kept, kept_path, load
 from texlab_core.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from texlab.controller import Controller
     from texlab.jobs import Task
-    from texlab.settings import Settings
+    from texlab.storage.settings import Settings
     from texlab_core.run import Job
     from texlab_core.steps import Result
 
@@ -91,7 +91,7 @@ def open_source(source: str | bytes | Kept) -> Opened:
     """
     from texlab_core.errors import NoRecipeError
     from texlab_core.images import as_exemplar
-    from texlab_core.recipe_reading import read_recipe
+    from texlab_core.recipes.reading import read_recipe
 
     if isinstance(source, Kept):
         return Opened(load(source), None)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from texlab.docks.base import Dock
     from texlab.session import Session
-    from texlab.settings import Settings
+    from texlab.storage.settings import Settings
     from texlab.theme import Theme, ThemeSource
 
 MAX_SIDE = 4096

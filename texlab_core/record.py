@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.files import write_together
-from texlab_core.image_writing import check_format, encode_image, write_image
+from texlab_core.formats.maps import save_maps
+from texlab_core.formats.writing import check_format, encode_image, write_image
 from texlab_core.inputs import ImageInput
-from texlab_core.map_files import save_maps
-from texlab_core.recipe_reading import KEY, read_recipe, sidecar
-from texlab_core.recipes import Recipe, RecipeInput, recipe_json
+from texlab_core.recipes.reading import KEY, read_recipe, sidecar
+from texlab_core.recipes.recipe import Recipe, RecipeInput, recipe_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from texlab_core.image_writing import Bits
+    from texlab_core.formats.writing import Bits
     from texlab_core.steps import Result
 
 __all__ = ["Recipe", "RecipeInput", "read_recipe", "save_maps", "save_result", "summary"]

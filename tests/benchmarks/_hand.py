@@ -85,7 +85,7 @@ class Watch:
 
 def open_window(columns: int) -> Any:
     from texlab import app
-    from texlab.settings import Settings
+    from texlab.storage.settings import Settings
     from texlab.theme import ThemeSource
     from texlab_core.registry import methods
 

@@ -84,7 +84,7 @@ def window(
     qtbot: Any, tmp_path: Any, columns: list[tuple[str, dict[str, Any]]], size: int, source: Any
 ) -> Iterator[Any]:
     from texlab import app
-    from texlab.settings import Settings
+    from texlab.storage.settings import Settings
     from texlab.theme import ThemeSource
     from texlab_core.registry import methods
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from texlab_core.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
 from texlab_core.errors import Cancelled, InputError
-from texlab_core.image_files import read_image
+from texlab_core.formats.reading import read_image
 from texlab_core.images import as_exemplar
 from texlab_core.registry import methods
 from texlab_core.run import run
+from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab
@@ -77,7 +77,7 @@ def test_a_comparison_can_be_stopped() -> None:
 
 
 def test_a_method_that_fails_leaves_its_place_and_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    import texlab_core.comparison as module
+    import texlab_core.sheets.comparison as module
 
     def refuse(*args: object, **options: object) -> None:
         raise InputError("It cannot be done.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from texlab_core.image_files import read_image
+from texlab_core.formats.reading import read_image
 from texlab_core.spectral.codefile import read_code
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tests.core.test_efros_leung import texture
-from texlab_core.image_files import read_image
-from texlab_core.image_writing import write_image
+from texlab_core.formats.reading import read_image
+from texlab_core.formats.writing import write_image
 from texlab_core.images import as_exemplar
 from texlab_core.methods.efros_leung import EfrosLeungParams
 from texlab_core.run import Job, run

@@ -11,7 +11,7 @@ from stub_method import running, stub  # noqa: F401
 from texlab.cli import main
 from texlab.commands.presets import own_presets
 from texlab_core.presets import Preset
-from texlab_core.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_recipes import find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 GRAVEL = "gallery:stochastic-gravel"

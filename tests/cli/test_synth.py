@@ -14,11 +14,11 @@ import pytest
 
 from tests.core.toy import NoiseParams, noise_method
 from texlab_core import registry, synthesize
-from texlab_core.image_files import read_image
-from texlab_core.image_writing import write_image
+from texlab_core.formats.png_text import read_text
+from texlab_core.formats.reading import read_image
+from texlab_core.formats.writing import write_image
 from texlab_core.inputs import Crop
-from texlab_core.png_text import read_text
-from texlab_core.recipe_reading import KEY
+from texlab_core.recipes.reading import KEY
 from texlab_core.record import read_recipe
 
 if TYPE_CHECKING:

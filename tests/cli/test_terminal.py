@@ -180,7 +180,7 @@ def test_what_the_core_logs_goes_to_the_log_file(
         try:
             raise RuntimeError("told in the log")
         except RuntimeError:
-            logging.getLogger("texlab_core.sweep").exception("A cell failed")
+            logging.getLogger("texlab_core.sheets.sweep").exception("A cell failed")
     assert capsys.readouterr().err == ""
     assert "told in the log" in (tmp_path / "log" / "texlab.log").read_text()
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from texlab_core.image_files import read_image
+from texlab_core.formats.reading import read_image
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from texlab_core.contact_sheet import Tile, check_sheet, contact_sheet, font_size, series_columns
 from texlab_core.errors import InputError
+from texlab_core.sheets.contact_sheet import Tile, check_sheet, contact_sheet, font_size, series_columns
 
 
 def pictures(count, height=40, width=30, channels=3):

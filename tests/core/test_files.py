@@ -6,9 +6,10 @@ import stat
 import numpy as np
 import pytest
 
-from texlab_core import files, map_files
+from texlab_core import files
 from texlab_core.errors import InputError
 from texlab_core.files import write_together, write_whole
+from texlab_core.formats import maps as map_files
 from texlab_core.images import as_exemplar
 from texlab_core.record import save_maps, save_result
 from texlab_core.run import Job, run

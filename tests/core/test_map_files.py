@@ -9,8 +9,8 @@ import pytest
 
 from tests.core.test_record import levels, method, result_of  # noqa: F401
 from texlab_core.errors import InputError
+from texlab_core.formats.maps import picture
 from texlab_core.images import as_exemplar
-from texlab_core.map_files import picture
 from texlab_core.record import save_maps
 from texlab_core.steps import Curve, Map
 

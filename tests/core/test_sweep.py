@@ -13,8 +13,8 @@ from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F
 
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.run import AnalysisCache, Job, run
+from texlab_core.sheets.sweep import Cell, Sweep, Vary, evidence_of, run_sweep, sweep_of
 from texlab_core.steps import Map, Output
-from texlab_core.sweep import Cell, Sweep, Vary, evidence_of, run_sweep, sweep_of
 
 pytestmark = pytest.mark.usefixtures("stub")
 
@@ -206,7 +206,7 @@ def test_a_failing_cell_keeps_its_sentence_and_the_others_go_on():
 
 
 def test_an_unexpected_failure_is_logged_and_kept(caplog, monkeypatch):
-    monkeypatch.setattr("texlab_core.sweep.evidence_of", lambda _: 1 / 0)
+    monkeypatch.setattr("texlab_core.sheets.sweep.evidence_of", lambda _: 1 / 0)
     cells = run_sweep(sweep_of(base(), ["level=1,2"]))
     assert cells[0].error == "Something unexpected happened (ZeroDivisionError: division by zero)."
     assert "ZeroDivisionError" in caplog.text

@@ -11,14 +11,14 @@ from stub_method import StubParams, exemplar, stub  # noqa: F401
 
 from texlab_core import strict_json
 from texlab_core.errors import RecipeError
-from texlab_core.image_writing import write_image
+from texlab_core.formats.writing import write_image
 from texlab_core.images import as_exemplar
 from texlab_core.inputs import Crop
 from texlab_core.params import describe
 from texlab_core.registry import find_method
 from texlab_core.run import Job
-from texlab_core.sweep import Cell, Vary, run_sweep, sweep_of
-from texlab_core.sweep_recipes import (
+from texlab_core.sheets.sweep import Cell, Vary, run_sweep, sweep_of
+from texlab_core.sheets.sweep_recipes import (
     TEXT_KEY,
     ExemplarChoice,
     SweepRecipe,
@@ -26,7 +26,7 @@ from texlab_core.sweep_recipes import (
     find_sweep,
     sweep_recipe_from_json,
 )
-from texlab_core.sweep_sheet import sweep_sheet
+from texlab_core.sheets.sweep_sheet import sweep_sheet
 
 pytestmark = pytest.mark.usefixtures("stub")
 

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
 from texlab import app as texlab_app
-from texlab.settings import Settings
+from texlab.storage.settings import Settings
 from texlab.theme import ThemeSource
 from texlab_core.registry import methods
 from texlab_core.warming import warm_up

@@ -11,8 +11,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.code_numbers import Number, differs, dragged, limits, value, values, with_value
 from texlab.docks.code import EDITED, CodeDock, encoded
+from texlab.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
 from texlab.theme import DARK, LIGHT
 from texlab_core.inputs import DataInput
 from texlab_core.registry import methods

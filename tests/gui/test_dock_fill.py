@@ -13,9 +13,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab import kept_inputs
 from texlab.docks.fill import FillDock, mask_input, read_mask
-from texlab.kept_inputs import input_to_json, keep_inputs, load_input
+from texlab.storage import kept_inputs
+from texlab.storage.kept_inputs import input_to_json, keep_inputs, load_input
 from texlab.views.mask_canvas import paint_line
 from texlab_core.errors import InputError
 from texlab_core.inputs import ArraysInput, DataInput, ImageInput, hash_arrays

@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QApplication
 
 from tests.gui.conftest import wait_idle
 from texlab.docks.gabor import ZEBRA, GaborDock, strongest_filter
-from texlab.gabor_pictures import Pair, strongest
-from texlab.plane_pane import Ring
+from texlab.spectral.gabor_pictures import Pair, strongest
+from texlab.spectral.plane_pane import Ring
 from texlab.theme import DARK, LIGHT
 from texlab_core.spectral.bank import CENTRES_U, CENTRES_V
 from texlab_core.transforms.gabor import filter_bank, psnr

@@ -10,7 +10,7 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from texlab.docks.spectrum import SpectrumDock
-from texlab.plane_pane import Arrow, Ring, Spot
+from texlab.spectral.plane_pane import Arrow, Ring, Spot
 from texlab.theme import DARK, LIGHT
 from texlab_core.run import Job, run
 from texlab_core.spectral.bank import CENTRES_U, CENTRES_V

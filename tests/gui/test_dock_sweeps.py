@@ -26,8 +26,8 @@ from texlab.views.sweep_axis import AxisEditor
 from texlab_core.errors import InputError
 from texlab_core.registry import find_method
 from texlab_core.run import run
-from texlab_core.sweep import Vary
-from texlab_core.sweep_recipes import SweepRecipe, bundled_sweeps, find_sweep
+from texlab_core.sheets.sweep import Vary
+from texlab_core.sheets.sweep_recipes import SweepRecipe, bundled_sweeps, find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 LEFT = Qt.MouseButton.LeftButton

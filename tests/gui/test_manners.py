@@ -18,11 +18,11 @@ from tests.gui.conftest import drag, hb, ids, result_image, wait_idle
 from texlab import session as session_module
 from texlab.app import closed_by_signals
 from texlab.jobs import Worker
-from texlab.kept_exemplar import Kept, keep, load
-from texlab.plots import Plot
 from texlab.session import Sample, Session
-from texlab.settings import Settings
+from texlab.storage.kept_exemplar import Kept, keep, load
+from texlab.storage.settings import Settings
 from texlab.views.status_line import LINES, StatusLine
+from texlab.widgets.plots import Plot
 from texlab_core.images import as_exemplar
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
-from texlab.band_bars import BandBars, Bar
-from texlab.patch_grid import Patch, PatchGrid
+from texlab.explaining.band_bars import BandBars, Bar
+from texlab.explaining.patch_grid import Patch, PatchGrid
 from texlab.theme import DARK, LIGHT
 
 BARS = (

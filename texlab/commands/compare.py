@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.cli import Parser
-    from texlab_core.comparison import Compared
+    from texlab_core.sheets.comparison import Compared
 
 HELP = "Run several methods on one exemplar and save them side by side."
 ORDER = 16
@@ -56,11 +56,11 @@ def execute(args: argparse.Namespace) -> int:
         raise ParamError("out", "a file name that ends in .png", args.out)
     refuse_overwriting(out, args.image)
 
-    from texlab_core.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
-    from texlab_core.contact_sheet import check_sheet, series_columns
     from texlab_core.files import write_whole
-    from texlab_core.image_writing import encode_png
+    from texlab_core.formats.writing import encode_png
     from texlab_core.images import as_exemplar
+    from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
+    from texlab_core.sheets.contact_sheet import check_sheet, series_columns
 
     if args.methods is None:
         names: Sequence[str] = FIG_8 if args.same_phase else FIRST_SIGHT

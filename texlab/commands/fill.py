@@ -92,7 +92,7 @@ def transparent_part(source: str) -> ImageInput:
     """Return a mask of what is not opaque in an image; raises ``InputError`` when it has no transparency."""
     import numpy as np
 
-    from texlab_core.image_files import read_image
+    from texlab_core.formats.reading import read_image
     from texlab_core.images import as_exemplar
 
     if source.startswith("gallery:"):

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab.cli import Parser
-    from texlab_core.image_files import Decoded
-    from texlab_core.image_writing import Bits
-    from texlab_core.recipes import Recipe
+    from texlab_core.formats.reading import Decoded
+    from texlab_core.formats.writing import Bits
+    from texlab_core.recipes.recipe import Recipe
 
 HELP = "Make a saved result again, from the recipe inside it."
 ORDER = 15
@@ -88,7 +88,7 @@ def _check_missing(name: str, recipe: Recipe, given: Mapping[str, str]) -> None:
 
 def _pixels(path: str) -> Decoded | None:
     """Return the saved image; None for one whose format loses bits, or a recipe without an image."""
-    from texlab_core.image_files import read_image
+    from texlab_core.formats.reading import read_image
 
     if Path(path).suffix.lower() not in (".png", ".tif", ".tiff"):
         return None
@@ -97,7 +97,7 @@ def _pixels(path: str) -> Decoded | None:
 
 def _bits(args: argparse.Namespace, before: Decoded | None) -> Bits:
     """Return the depth that was asked for, else that of the result when the new file can hold it."""
-    from texlab_core.image_writing import check_format
+    from texlab_core.formats.writing import check_format
 
     bits: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
     if args.bits is not None:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from texlab.cli import Parser
     from texlab_core.inputs import ImageInput
-    from texlab_core.sweep import Cell, Sweep
-    from texlab_core.sweep_recipes import SweepRecipe
+    from texlab_core.sheets.sweep import Cell, Sweep
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 HELP = "Vary one or two parameters and save a contact sheet."
 ORDER = 15
@@ -58,10 +58,10 @@ def configure(parser: Parser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Check everything, run the cells, save the sheet, report."""
-    from texlab_core.contact_sheet import check_sheet
     from texlab_core.errors import ParamError
-    from texlab_core.sweep import run_sweep
-    from texlab_core.sweep_sheet import sheet_columns, write_sheet
+    from texlab_core.sheets.contact_sheet import check_sheet
+    from texlab_core.sheets.sweep import run_sweep
+    from texlab_core.sheets.sweep_sheet import sheet_columns, write_sheet
 
     out = output_file(args.out)
     if out.suffix.lower() != ".png":
@@ -90,8 +90,8 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     from texlab_core.images import as_exemplar
     from texlab_core.preset_store import find_preset
     from texlab_core.registry import find_method
-    from texlab_core.sweep import Vary
-    from texlab_core.sweep_recipes import SweepRecipe, find_sweep
+    from texlab_core.sheets.sweep import Vary
+    from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
 
     recipe = None if args.recipe is None else find_sweep(args.recipe)
     preset = None if args.preset is None else find_preset(args.preset, own_presets(), args.method)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.cli import Parser
-    from texlab_core.image_writing import Bits
+    from texlab_core.formats.writing import Bits
     from texlab_core.params import Params
     from texlab_core.run import Job
     from texlab_core.steps import Result
@@ -106,7 +106,7 @@ class Outputs:
 
 def check_outputs(args: argparse.Namespace, bits: Bits) -> Outputs:
     """Return where to write; raises ``InputError`` when that will not be possible."""
-    from texlab_core.image_writing import check_format
+    from texlab_core.formats.writing import check_format
 
     check_format(args.out, bits)
     image = output_file(args.out)

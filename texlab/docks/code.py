@@ -19,7 +19,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from texlab.code_numbers import (
+from texlab.colouring import SEQUENTIAL_TABLE
+from texlab.dock_frame import FramedDock, shown_image
+from texlab.recent import Recent, Same
+from texlab.scene import Question
+from texlab.spectral.code_numbers import (
     COLUMNS,
     SIZES,
     Group,
@@ -33,12 +37,8 @@ from texlab.code_numbers import (
     values,
     with_value,
 )
-from texlab.code_views import CodeGrid, HistogramBars
-from texlab.colouring import SEQUENTIAL_TABLE
-from texlab.dock_frame import FramedDock, shown_image
-from texlab.plots import number as digits
-from texlab.recent import Recent, Same
-from texlab.scene import Question
+from texlab.spectral.code_views import CodeGrid, HistogramBars
+from texlab.widgets.plots import number as digits
 from texlab_core.inputs import DataInput
 from texlab_core.spectral.bank import CENTRE_FREQUENCIES, CENTRE_ORIENTATIONS, WIDTHS
 

@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from texlab.colouring import SEQUENTIAL_TABLE
 from texlab.dock_frame import FramedDock, replace_items
-from texlab.heat_map import HeatMap
-from texlab.plots import SERIES, Plot, number
 from texlab.recent import Same
 from texlab.scene import Question
+from texlab.widgets.heat_map import HeatMap
+from texlab.widgets.plots import SERIES, Plot, number
 from texlab_core.steps import Curve
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWi
 
 from texlab.colouring import gray
 from texlab.dock_frame import FramedDock, shown_image
-from texlab.gabor_pictures import RESIDUAL, GaborAnswer, GaborRequest, Pair, gabor_pictures
-from texlab.plane_pane import Drawn, PlanePane, Ring
-from texlab.plots import ColourBar, PicturePane, number
 from texlab.recent import Recent, Same
 from texlab.scene import Question
-from texlab.spectra import frequency_area
+from texlab.spectral.gabor_pictures import RESIDUAL, GaborAnswer, GaborRequest, Pair, gabor_pictures
+from texlab.spectral.plane_pane import Drawn, PlanePane, Ring
+from texlab.spectral.spectra import frequency_area
 from texlab.views.view_link import ViewLink
+from texlab.widgets.plots import ColourBar, PicturePane, number
 from texlab_core.spectral.bank import CHANNELS, channel_name
 from texlab_core.transforms.gabor import circles, filter_bank
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from PySide6.QtCore import QObject
 
-    from texlab.gabor_pictures import Shown
     from texlab.scene import Scene
+    from texlab.spectral.gabor_pictures import Shown
     from texlab.theme import Theme
 
 ZEBRA = "gallery:oriented-zebra"

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from texlab.comparison import Comparison, compare
-from texlab.comparison_view import HistogramPlot, NumbersTable
+from texlab.bands.comparison import Comparison, compare
+from texlab.bands.comparison_view import HistogramPlot, NumbersTable
+from texlab.bands.controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
 from texlab.dock_frame import FramedDock, replace_items, shown_image
-from texlab.pyramid_controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
 from texlab.recent import Same
 from texlab.scene import Question
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection

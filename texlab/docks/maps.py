@@ -21,9 +21,9 @@ from PySide6.QtWidgets import (
 
 from texlab import colouring
 from texlab.dock_frame import FramedDock, replace_items
-from texlab.plots import ColourBar, PicturePane, number, pg
 from texlab.recent import Same
 from texlab.scene import Question
+from texlab.widgets.plots import ColourBar, PicturePane, number, pg
 
 if TYPE_CHECKING:
     from collections.abc import Callable

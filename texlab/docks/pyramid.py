@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QHBoxLayout, QLabel, QSplitter, QVBoxLayout, QWidget
 
-from texlab import mosaic
-from texlab.band_detail import BandDetail
+from texlab.bands import mosaic
+from texlab.bands.controls import KINDS, BandCache, PyramidControls, channel_items
+from texlab.bands.detail import BandDetail
+from texlab.bands.mosaic_view import MosaicView
+from texlab.bands.pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.dock_frame import FramedDock, replace_items, shown_image
-from texlab.mosaic_view import MosaicView
-from texlab.plots import PicturePane, number
-from texlab.pyramid_controls import KINDS, BandCache, PyramidControls, channel_items
-from texlab.pyramid_pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.recent import Recent, Same
 from texlab.scene import Question
 from texlab.views.view_link import ViewLink
+from texlab.widgets.plots import PicturePane, number
 from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from PySide6.QtCore import QObject
     from PySide6.QtGui import QKeyEvent, QResizeEvent
 
-    from texlab.pyramid_pictures import MosaicPicture
+    from texlab.bands.pictures import MosaicPicture
     from texlab.scene import Scene
     from texlab.theme import Theme
     from texlab_core.transforms.steerable import BandKey

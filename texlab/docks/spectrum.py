@@ -10,12 +10,12 @@ from PySide6.QtCore import QEvent, QRectF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.dock_frame import FramedDock, shown_image
-from texlab.peaks_table import PeaksTable, peak_rows
-from texlab.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
-from texlab.plots import SERIES, ColourBar, Plot, number
 from texlab.recent import Recent, Same
 from texlab.scene import Question
-from texlab.spectra import Analysed, SpectraAnswer, spectra, table_of
+from texlab.spectral.peaks_table import PeaksTable, peak_rows
+from texlab.spectral.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
+from texlab.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
+from texlab.widgets.plots import SERIES, ColourBar, Plot, number
 from texlab_core.spectral.bank import CENTRES_U, CENTRES_V
 from texlab_core.stats.spectrum import QUANTIZATION
 from texlab_core.transforms.gabor import circles
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
 
     from texlab.scene import Scene
-    from texlab.spectra import PlanePicture, View
+    from texlab.spectral.spectra import PlanePicture, View
     from texlab.theme import Theme
     from texlab_core.stats.peaks import Peak
     from texlab_core.stats.spectrum import Floats

@@ -8,9 +8,9 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
 
 from texlab.dock_frame import FramedDock
-from texlab.plots import PicturePane
 from texlab.recent import Same
 from texlab.scene import Question
+from texlab.widgets.plots import PicturePane
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -27,9 +27,9 @@ from texlab.views.contact_sheet_view import LARGEST, SMALLEST, USUAL, ContactShe
 from texlab.views.sweep_panel import SweepPanel
 from texlab_core.errors import InputError
 from texlab_core.registry import find_method
-from texlab_core.sweep import show
-from texlab_core.sweep_recipes import bundled_sweeps
-from texlab_core.sweep_sheet import sweep_title, write_sheet
+from texlab_core.sheets.sweep import show
+from texlab_core.sheets.sweep_recipes import bundled_sweeps
+from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from texlab.scene import Scene
     from texlab.theme import Theme
     from texlab_core.params import Params
-    from texlab_core.sweep import Sweep
-    from texlab_core.sweep_recipes import SweepRecipe
+    from texlab_core.sheets.sweep import Sweep
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 ZOOM_STEP = 16
 

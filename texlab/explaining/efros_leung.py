@@ -9,10 +9,10 @@ import numpy as np
 from PySide6.QtWidgets import QLabel, QVBoxLayout
 
 from texlab.explaining.base import Explainer, ExplanationView
-from texlab.patch_grid import Patch, PatchGrid
+from texlab.explaining.patch_grid import Patch, PatchGrid
 from texlab.pictures import to_picture
-from texlab.plots import number
 from texlab.scene import Mark
+from texlab.widgets.plots import number
 from texlab_core.inputs import exemplar_of
 from texlab_core.neighbourhood.evidence import UNITS
 from texlab_core.neighbourhood.explain import Explanation, Grown, explain
@@ -20,7 +20,7 @@ from texlab_core.neighbourhood.explain import Explanation, Grown, explain
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from texlab.patch_grid import Frame
+    from texlab.explaining.patch_grid import Frame
     from texlab.theme import Theme
     from texlab_core.neighbourhood.windows import Matching
     from texlab_core.steps import FloatImage, Result

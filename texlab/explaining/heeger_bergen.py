@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from texlab.band_bars import BandBars, Bar
 from texlab.colouring import diverging
+from texlab.explaining.band_bars import BandBars, Bar
 from texlab.explaining.base import Explainer, ExplanationView
-from texlab.plots import PicturePane, number, pg
 from texlab.recent import Recent, Same
+from texlab.widgets.plots import PicturePane, number, pg
 from texlab_core.marginals.contributions import contributions
 from texlab_core.methods.heeger_bergen import Convergence, HeegerBergenParams
 from texlab_core.stats.bands import LUMA, names

@@ -17,8 +17,8 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.views.image_pane import ImagePane
-from texlab.views.short_box import ShortBox
 from texlab.views.status_line import SEPARATOR, StatusLine, strut
+from texlab.widgets.short_box import ShortBox
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

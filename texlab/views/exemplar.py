@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
 
 from texlab.views.image_pane import ImagePane
-from texlab.views.short_box import ShortBox
 from texlab.views.status_line import StatusLine, strut
+from texlab.widgets.short_box import ShortBox
 from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent
 
-from texlab.plots import PicturePane, pg
+from texlab.widgets.plots import PicturePane, pg
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -20,11 +20,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from texlab.flow_layout import FlowLayout
 from texlab.scales import box_step, decimals
+from texlab.widgets.flow_layout import FlowLayout
 from texlab_core.errors import ParamError
 from texlab_core.params import describe
-from texlab_core.sweep import MAX_CELLS, Vary, check_knob, spread
+from texlab_core.sheets.sweep import MAX_CELLS, Vary, check_knob, spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,11 +9,11 @@ from PySide6.QtWidgets import QComboBox, QGridLayout, QLabel, QScrollArea, QSize
 
 from texlab.sweep_run import SweepPlan
 from texlab.views.sweep_axis import AxisChoice, AxisEditor
-from texlab_core.sweep import show
+from texlab_core.sheets.sweep import show
 
 if TYPE_CHECKING:
     from texlab_core.registry import Method
-    from texlab_core.sweep_recipes import SweepRecipe
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 SIDES = (64, 96, 128, 192, 256)
 USUAL_SIDE = 128

@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.contact_sheet import Tile, contact_sheet
 from texlab_core.images import as_exemplar
 from texlab_core.inputs import Crop
 from texlab_core.registry import find_method
 from texlab_core.run import Job, run
+from texlab_core.sheets.contact_sheet import Tile, contact_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.inputs import ImageInput
+    from texlab_core.sheets.sweep import Cell
     from texlab_core.steps import FloatImage, Result
-    from texlab_core.sweep import Cell
 
 PAGE_WIDTH = 712
 _GAP = 8
@@ -60,7 +60,7 @@ def frames(method: str, exemplar: ImageInput, size: int, seed: int = 1, **values
 
 def evidence(result: Result) -> str:
     """Return the share of copied neighbours as a caption."""
-    from texlab_core.sweep import evidence_of
+    from texlab_core.sheets.sweep import evidence_of
 
     copied = evidence_of(result)[0]
     return "" if copied is None else f"copied {copied:.2f}"

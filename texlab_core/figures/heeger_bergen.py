@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from texlab_core.contact_sheet import Tile
 from texlab_core.figures import Figure
 from texlab_core.figures._charts import Line, log_chart
 from texlab_core.figures._tools import PAGE_WIDTH, frames, make, page, texture, title_of
+from texlab_core.sheets.contact_sheet import Tile
 
 if TYPE_CHECKING:
     import numpy as np

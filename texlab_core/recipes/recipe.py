@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.embedding import embed, unpack_arrays, unpack_pixels
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.images import as_exemplar, take
 from texlab_core.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
+from texlab_core.recipes.embedding import embed, unpack_arrays, unpack_pixels
 from texlab_core.run import Job, versions
 
 if TYPE_CHECKING:

@@ -8,15 +8,15 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QGraphicsRectItem, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from texlab.plots import PicturePane, pg
+from texlab.widgets.plots import PicturePane, pg
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from PySide6.QtGui import QFocusEvent, QKeyEvent
 
-    from texlab.mosaic import Direction
-    from texlab.pyramid_pictures import MosaicPicture
+    from texlab.bands.mosaic import Direction
+    from texlab.bands.pictures import MosaicPicture
     from texlab.theme import Theme
     from texlab_core.transforms.steerable import BandKey
 

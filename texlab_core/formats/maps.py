@@ -14,7 +14,7 @@ import numpy as np
 from texlab_core import strict_json
 from texlab_core.errors import InputError
 from texlab_core.files import write_together
-from texlab_core.image_writing import encode_png
+from texlab_core.formats.writing import encode_png
 from texlab_core.inputs import ImageInput
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from texlab.plots import number
+from texlab.widgets.plots import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab import mosaic
+from texlab.bands import mosaic
+from texlab.bands.comparison import Comparison, compare
 from texlab.colouring import DIVERGING_TABLE, GRAY_TABLE, Scale, paint
-from texlab.comparison import Comparison, compare
 from texlab.pictures import to_picture
 from texlab.recent import Same
 from texlab_core.errors import Cancelled
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab.pyramid_controls import BandCache, PyramidSettings
+    from texlab.bands.controls import BandCache, PyramidSettings
     from texlab.recent import Recent
     from texlab.scene import Picture
     from texlab_core.stats.bands import Band, Channel

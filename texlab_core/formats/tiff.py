@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from texlab_core.errors import ImageError
-from texlab_core.image_files import Decoded, check_pixels, oriented
+from texlab_core.formats.reading import Decoded, check_pixels, oriented
 from texlab_core.run import MAX_PIXELS
 
 if TYPE_CHECKING:
@@ -138,6 +138,6 @@ def _in_srgb(
             raise ImageError(f"{name}: is a CMYK TIFF of {values.dtype}; 8 or 16 bits are read.")
         notes.append("The colour profile was ignored, because it is applied to 8 and 16 bits only.")
         return values
-    from texlab_core.colour_profiles import to_srgb
+    from texlab_core.formats.profiles import to_srgb
 
     return to_srgb(values, profile, cmyk=inks, notes=notes)

@@ -11,7 +11,7 @@ import numpy as np
 
 from texlab_core.errors import ImageError
 from texlab_core.files import write_whole
-from texlab_core.png_text import with_text
+from texlab_core.formats.png_text import with_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

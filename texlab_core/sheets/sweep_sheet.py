@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from texlab_core.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.registry import find_method
-from texlab_core.sweep import show
+from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
+from texlab_core.sheets.sweep import show
 
 if TYPE_CHECKING:
     import os
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.sweep import Cell, Sweep
+    from texlab_core.sheets.sweep import Cell, Sweep
 
 
 def sweep_sheet(
@@ -92,9 +92,9 @@ def write_sheet(
         When the sheet would be too large, or cannot be written.
     """
     from texlab_core.files import write_whole
-    from texlab_core.image_writing import encode_png
+    from texlab_core.formats.writing import encode_png
     from texlab_core.run import versions
-    from texlab_core.sweep_recipes import TEXT_KEY, SweepRecipe
+    from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
     across = sheet_columns(sweep) if columns is None else columns
     check_sheet(len(sweep.jobs), across, sweep.base.size, largest)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab.kept_exemplar import compact
 from texlab.paths import config_dir
+from texlab.storage.kept_exemplar import compact
 from texlab_core.errors import InputError
 from texlab_core.files import write_whole
 from texlab_core.inputs import ArraysInput, DataInput, ImageInput, hash_arrays

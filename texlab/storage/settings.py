@@ -6,8 +6,8 @@ import json
 import logging
 from typing import TYPE_CHECKING, Any
 
-from texlab.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.paths import config_dir
+from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab_core.errors import InputError
 from texlab_core.files import write_whole
 from texlab_core.registry import EXEMPLAR, methods

@@ -14,7 +14,7 @@ from texlab_core.spectral.bank import channel_name
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
-    from texlab.spectra import SpectraAnswer
+    from texlab.spectral.spectra import SpectraAnswer
     from texlab.theme import Theme
     from texlab_core.stats.peaks import Peak, Shift
 

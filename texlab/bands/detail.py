@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from texlab.comparison_view import HistogramPlot, NumbersTable
-from texlab.plots import ColourBar, PicturePane, number
-from texlab.pyramid_pictures import BandLarge, band_table
+from texlab.bands.comparison_view import HistogramPlot, NumbersTable
+from texlab.bands.pictures import BandLarge, band_table
 from texlab.views.view_link import ViewLink
+from texlab.widgets.plots import ColourBar, PicturePane, number
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent

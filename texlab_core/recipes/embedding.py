@@ -13,9 +13,9 @@ import numpy as np
 
 from texlab_core import strict_json
 from texlab_core.errors import InputError, RecipeError
-from texlab_core.image_writing import encode_png, quantize
+from texlab_core.formats.png_text import inflate
+from texlab_core.formats.writing import encode_png, quantize
 from texlab_core.inputs import ArraysInput, ImageInput
-from texlab_core.png_text import inflate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -143,7 +143,7 @@ def _reason(error: Exception) -> str:
 
 
 def _decode_png(data: bytes, name: str) -> FloatImage:
-    from texlab_core.image_files import read_image
+    from texlab_core.formats.reading import read_image
 
     if not data.startswith(b"\x89PNG"):
         raise ValueError("is no PNG")

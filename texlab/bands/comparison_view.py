@@ -9,16 +9,16 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QAbstractItemView, QFrame, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
 
-from texlab.plots import Plot, number
+from texlab.widgets.plots import Plot, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from PySide6.QtWidgets import QWidget
 
-    from texlab.comparison import Comparison
-    from texlab.plots import Line, Role
+    from texlab.bands.comparison import Comparison
     from texlab.theme import Theme
+    from texlab.widgets.plots import Line, Role
     from texlab_core.stats.moments import Moments
 
 ROWS = ("mean", "sd", "skewness", "kurtosis", "W1", "W1 / sd")

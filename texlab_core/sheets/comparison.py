@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from threading import Event, Lock
 from typing import TYPE_CHECKING
 
-from texlab_core.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.registry import find_method, methods
 from texlab_core.run import MAX_SEED, Job, check_seed, run
+from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
 from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
 
 if TYPE_CHECKING:

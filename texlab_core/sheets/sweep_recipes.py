@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core import strict_json
 from texlab_core.errors import InputError, RecipeError
+from texlab_core.formats.png_text import SIGNATURE, read_text
 from texlab_core.inputs import Crop, ImageInput, exemplar_of
 from texlab_core.params import frozen_mapping
-from texlab_core.png_text import SIGNATURE, read_text
 from texlab_core.registry import find_method
 from texlab_core.resources import resource
 from texlab_core.run import Job, check_seed, check_size
-from texlab_core.sweep import Sweep, Vary, check_knob, spread
+from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -115,11 +115,11 @@ def _decode(file: BinaryIO, name: str) -> Decoded:
 
 def _reader(head: bytes) -> Callable[[BinaryIO, str], Decoded] | None:
     if head.startswith((b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")):
-        from texlab_core.tiff_files import read_tiff
+        from texlab_core.formats.tiff import read_tiff
 
         return read_tiff
     if head[:1] == b"P" and head[1:2] in b"123456" and head[2:3] in b" \t\r\n#":
-        from texlab_core.pnm_files import read_pnm
+        from texlab_core.formats.pnm import read_pnm
 
         return read_pnm
     known = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"BM")
@@ -145,7 +145,7 @@ def _read_with_pillow(file: BinaryIO, name: str) -> Decoded:
         values = np.asarray(_plain(image))
     values = values.reshape(values.shape[0], values.shape[1], -1)
     if image.mode == "CMYK" or image.info.get("icc_profile"):
-        from texlab_core.colour_profiles import to_srgb
+        from texlab_core.formats.profiles import to_srgb
 
         values = to_srgb(values, image.info.get("icc_profile"), cmyk=image.mode == "CMYK", notes=notes)
     values = oriented(values, _orientation(image), notes)

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from texlab.heat_map import HeatMap
+from texlab.widgets.heat_map import HeatMap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

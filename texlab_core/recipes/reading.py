@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from texlab_core import strict_json
-from texlab_core.embedding import MAX_DATA_DEPTH
 from texlab_core.errors import InputError, NoRecipeError, RecipeError
+from texlab_core.formats.png_text import SIGNATURE, read_text
 from texlab_core.inputs import Crop
 from texlab_core.params import frozen_mapping
-from texlab_core.png_text import SIGNATURE, read_text
-from texlab_core.recipes import VERSION, Recipe, RecipeInput
+from texlab_core.recipes.embedding import MAX_DATA_DEPTH
+from texlab_core.recipes.recipe import VERSION, Recipe, RecipeInput
 from texlab_core.registry import Method, find_method
 from texlab_core.run import check_seed, check_size
 from texlab_core.wording import sentence_case

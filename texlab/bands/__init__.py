@@ -1,0 +1,1 @@
+"""What the docks show of subbands: mosaics, one band large, distributions."""

@@ -1,0 +1,1 @@
+"""What the docks show of spectra: planes of frequencies, peaks, Gabor channels, the code of 69 numbers."""

@@ -1,0 +1,1 @@
+"""Several jobs on one sheet: sweeps of parameters and comparisons of methods."""
