@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from texlab_core.errors import ImageError
-from texlab_core.formats.reading import Decoded, check_pixels, display_name, read_image
+from texlab_core.formats.decoded import Decoded, check_pixels
+from texlab_core.formats.reading import display_name, read_image
 from texlab_core.inputs import Crop, ImageInput, Origin, hash_arrays
 
 if TYPE_CHECKING:

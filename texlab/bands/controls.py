@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from texlab.dock_frame import FramedDock
     from texlab.scene import Scene
-    from texlab_core.stats.bands import Band, Channel, PyramidKind
+    from texlab_core.stats.bands import Band, Channel
+    from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.steps import FloatImage
 
 # Name and description of every kind.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab.cli import Parser
-    from texlab_core.formats.reading import Decoded
+    from texlab_core.formats.decoded import Decoded
     from texlab_core.formats.writing import Bits
     from texlab_core.recipes.recipe import Recipe
 

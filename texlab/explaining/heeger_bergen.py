@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from texlab.scene import Picture
     from texlab.theme import Theme
     from texlab_core.marginals.contributions import Contributions
-    from texlab_core.stats.bands import PyramidKind
+    from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.steps import FloatImage, Result
     from texlab_core.transforms.steerable import BandKey
 

@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from PySide6.QtCore import QPointF, QRectF
 
-if TYPE_CHECKING:
-    from texlab.views.image_pane import ImagePane
+
+class Linked(Protocol):
+    """A pane that can follow others."""
+
+    @property
+    def tiled(self) -> bool:
+        """Whether it shows its picture two by two."""
+        ...
+
+    @property
+    def shown_scale(self) -> float:
+        """Widget pixels per image pixel."""
+        ...
+
+    def devicePixelRatioF(self) -> float:
+        """Return pixels of the screen per logical pixel."""
+        ...
+
+    def view_rect(self) -> QRectF:
+        """Return what is shown, in image pixels."""
+        ...
+
+    def show_rect(self, rectangle: QRectF) -> None:
+        """Show this, whole."""
+        ...
+
+    def show_around(self, centre: QPointF, scale: float) -> None:
+        """Show a place in the middle, at so many widget pixels per image pixel."""
+        ...
 
 
 class ViewLink:
@@ -19,21 +46,21 @@ class ViewLink:
     """
 
     def __init__(self) -> None:
-        self._panes: list[ImagePane] = []
+        self._panes: list[Linked] = []
         self._extent = (1, 1)
         self._centre = QPointF()
         self._scale: float | None = None
 
-    def join(self, pane: ImagePane) -> None:
+    def join(self, pane: Linked) -> None:
         """Make a pane follow the others."""
         self._panes.append(pane)
 
-    def leave(self, pane: ImagePane) -> None:
+    def leave(self, pane: Linked) -> None:
         """Let a pane go."""
         if pane in self._panes:
             self._panes.remove(pane)
 
-    def moved(self, source: ImagePane) -> None:
+    def moved(self, source: Linked) -> None:
         """Show in all panes what the user made one show."""
         self._centre, self._scale = source.view_rect().center(), source.shown_scale
         for pane in self._panes:

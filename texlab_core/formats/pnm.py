@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from texlab_core.errors import ImageError
-from texlab_core.formats.reading import Decoded, check_pixels
+from texlab_core.formats.decoded import Decoded, check_pixels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

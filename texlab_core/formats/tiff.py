@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from texlab_core.errors import ImageError
-from texlab_core.formats.reading import Decoded, check_pixels, oriented
+from texlab_core.formats.decoded import Decoded, check_pixels, oriented
 from texlab_core.run import MAX_PIXELS
 
 if TYPE_CHECKING:

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.steps import FloatImage
 
-PyramidKind = Literal["steerable", "laplacian", "gaussian", "oriented", "gabor", "gabor magnitude", "filter bank"]
 Span = Literal["signed", "positive", "gray"]
 COLLAPSIBLE: tuple[PyramidKind, ...] = ("steerable", "laplacian")
 # Kinds whose number of scales, or of orientations, is the user's.

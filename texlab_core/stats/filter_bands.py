@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.stats.bands import PyramidKind
+    from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.transforms.steerable import BandKey
 
 # Side of the derivative filters, as De Bonet has them.
