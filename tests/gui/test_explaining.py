@@ -161,7 +161,7 @@ def test_the_dock_shows_matches_and_outlines_them(dock, grown, qtbot):
     place = view._explained.places[other]
 
     def click():
-        qtbot.mouseClick(view.grid, Qt.MouseButton.LeftButton, pos=view.grid.patch_rect(other).center().toPoint())
+        qtbot.mouseClick(view.grid, Qt.MouseButton.LeftButton, pos=view.grid.part_rect(other).center().toPoint())
 
     marks = marks_of(dock, qtbot, click)
     assert marks[-2] == Mark(place[0] - 3, place[1] - 3, 7, 7, "window")

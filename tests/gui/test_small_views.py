@@ -93,7 +93,7 @@ def grid(qtbot):
 
 def test_patches_are_painted_and_lie_apart(grid):
     image = grid.grab().toImage()
-    areas = [grid.patch_rect(index) for index in range(7)]
+    areas = [grid.part_rect(index) for index in range(7)]
     for tint, area in zip(range(20, 160, 20), areas, strict=True):
         assert (
             image.pixelColor(area.topLeft().toPoint() * 1 + (area.center() - area.topLeft()).toPoint() / 2).red()
@@ -106,17 +106,17 @@ def test_patches_are_painted_and_lie_apart(grid):
 
 
 def test_patches_use_the_room_and_the_first_is_as_high_as_all_rows(grid):
-    small = grid.patch_rect(1).width()
+    small = grid.part_rect(1).width()
     grid.resize(900, 300)
-    assert grid.patch_rect(1).width() > 1.5 * small
-    first, others = grid.patch_rect(0), [grid.patch_rect(index) for index in range(1, 7)]
+    assert grid.part_rect(1).width() > 1.5 * small
+    first, others = grid.part_rect(0), [grid.part_rect(index) for index in range(1, 7)]
     assert first.bottom() == pytest.approx(max(area.bottom() for area in others))
     assert first.width() >= others[0].width()
 
 
 def test_arrow_keys_go_through_the_rows(grid, qtbot):
     grid.resize(560, 300)
-    across = sum(grid.patch_rect(index).top() == grid.patch_rect(1).top() for index in range(1, 7))
+    across = sum(grid.part_rect(index).top() == grid.part_rect(1).top() for index in range(1, 7))
     assert 1 < across < 6
     grid.select(1)
     seen = []
@@ -129,13 +129,13 @@ def test_arrow_keys_go_through_the_rows(grid, qtbot):
 def test_patches_by_mouse_and_keys(grid, qtbot):
     seen = []
     grid.chosen.connect(seen.append)
-    qtbot.mouseClick(grid, Qt.MouseButton.LeftButton, pos=grid.patch_rect(2).center().toPoint())
+    qtbot.mouseClick(grid, Qt.MouseButton.LeftButton, pos=grid.part_rect(2).center().toPoint())
     for key in (Qt.Key.Key_Right, Qt.Key.Key_End, Qt.Key.Key_Right, Qt.Key.Key_Home, Qt.Key.Key_Left):
         qtbot.keyClick(grid, key)
     assert seen == [2, 3, 6, 6, 0, 0]
     assert grid.accessibleDescription() == "patch 20"
     with qtbot.waitSignal(grid.hovered) as told:
-        qtbot.mouseMove(grid, grid.patch_rect(4).center().toPoint())
+        qtbot.mouseMove(grid, grid.part_rect(4).center().toPoint())
     assert told.args == [4]
 
 

@@ -5,18 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from texlab.explaining.painted_choice import PaintedChoice
 from texlab.widgets.plots import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent
-
-    from texlab.theme import Theme
+    from PySide6.QtGui import QPaintEvent
+    from PySide6.QtWidgets import QWidget
 
 GAP = 14.0
 TYPICAL = 2.0
@@ -47,34 +46,18 @@ class Bar:
     title: str
 
 
-class BandBars(QWidget):
+class BandBars(PaintedChoice):
     """Shows bars; ``chosen`` and ``hovered`` tell the index of one, -1 for none."""
 
-    chosen = Signal(int)
-    hovered = Signal(int)
-
     def __init__(self, name: str, label: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName(name)
-        self.setAccessibleName(label)
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(160, 80)
-        self._theme: Theme | None = None
+        super().__init__(name, label, parent)
         self._bars: tuple[Bar, ...] = ()
         self._limit = 1.0
-        self._selected = -1
 
     @property
     def bars(self) -> tuple[Bar, ...]:
         """What is shown."""
         return self._bars
-
-    @property
-    def selected(self) -> int:
-        """Index of the chosen bar, -1 for none."""
-        return self._selected
 
     def show_bars(self, bars: Sequence[Bar]) -> None:
         """Show bars at one scale, in which the light areas stay as they are from pixel to pixel."""
@@ -83,21 +66,17 @@ class BandBars(QWidget):
         self._limit = max(reach, default=0.0) or 1.0
         self.select(self._selected)
 
-    def select(self, index: int) -> None:
-        """Mark a bar without telling anyone."""
-        self._selected = index if 0 <= index < len(self._bars) else -1
-        chosen = self._bars[self._selected] if self._selected >= 0 else None
-        self.setAccessibleDescription("" if chosen is None else f"{chosen.title}: {number(chosen.value)}")
-        self.update()
-
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self._theme = theme
-        self.update()
+    def descriptions(self) -> list[str]:
+        """Return every bar in words."""
+        return [f"{bar.title}: {number(bar.value)}" for bar in self._bars]
 
     def sizeHint(self) -> QSize:
         """Ask for bars that hold their names."""
         return QSize(40 * max(len(self._bars), 4), 160)
+
+    def part_rect(self, index: int) -> QRectF:
+        """Return the column in which a bar stands, above and below its name too."""
+        return self.bar_rect(index).adjusted(0, 0, 0, self.height())
 
     def bar_rect(self, index: int) -> QRectF:
         """Return the column in which a bar stands, all of its height."""
@@ -145,41 +124,14 @@ class BandBars(QWidget):
             painter.drawText(name, Qt.AlignmentFlag.AlignCenter, words)
         painter.end()
 
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Tell which bar is under the cursor."""
-        self.hovered.emit(self._at(event))
-
-    def leaveEvent(self, event: QEvent) -> None:
-        """Tell that the cursor has left."""
-        self.hovered.emit(-1)
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Choose the bar under the cursor."""
-        if (index := self._at(event)) >= 0:
-            self._choose(index)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
+    def reached(self, key: Qt.Key) -> int | None:
         """Go to the next bar, the first or the last."""
-        last = len(self._bars) - 1
-        wanted = {
-            Qt.Key.Key_Left: max(self._selected - 1, 0),
-            Qt.Key.Key_Right: min(self._selected + 1, last),
+        return {
+            Qt.Key.Key_Left: self._selected - 1,
+            Qt.Key.Key_Right: self._selected + 1,
             Qt.Key.Key_Home: 0,
-            Qt.Key.Key_End: last,
-        }.get(Qt.Key(event.key()))
-        if wanted is None or last < 0:
-            super().keyPressEvent(event)
-        else:
-            self._choose(wanted)
-
-    def _choose(self, index: int) -> None:
-        self.select(index)
-        self.chosen.emit(index)
-
-    def _at(self, event: QMouseEvent) -> int:
-        x = event.position().x()
-        columns = (self.bar_rect(index) for index in range(len(self._bars)))
-        return next((index for index, column in enumerate(columns) if column.left() <= x < column.right()), -1)
+            Qt.Key.Key_End: len(self._bars) - 1,
+        }.get(key)
 
     def _floor(self) -> float:
         """Return where the names begin."""

@@ -6,17 +6,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen
-from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from texlab.explaining.painted_choice import PaintedChoice
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent
+    from PySide6.QtGui import QPaintEvent
+    from PySide6.QtWidgets import QWidget
 
     from texlab.scene import Picture
-    from texlab.theme import Theme
 
 Frame = Literal["window", "chosen", "match", "other"]
 GAP = 8
@@ -32,58 +33,35 @@ class Patch:
     title: str
 
 
-class PatchGrid(QWidget):
+class PatchGrid(PaintedChoice):
     """Shows a large patch and others in rows beside it, as large as they fit.
 
     ``chosen(index)`` and ``hovered(index)`` tell a patch, -1 for none.
     """
 
-    chosen = Signal(int)
-    hovered = Signal(int)
-
     def __init__(self, name: str, label: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName(name)
-        self.setAccessibleName(label)
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(160, 80)
-        self._theme: Theme | None = None
+        super().__init__(name, label, parent)
         self._patches: tuple[Patch, ...] = ()
-        self._selected = -1
 
     @property
     def patches(self) -> tuple[Patch, ...]:
         """What is shown."""
         return self._patches
 
-    @property
-    def selected(self) -> int:
-        """Index of the chosen patch, -1 for none."""
-        return self._selected
-
     def show_patches(self, patches: Sequence[Patch]) -> None:
         """Show patches; the first one stands for itself, the others are compared with it."""
         self._patches = tuple(patches)
         self.select(self._selected)
 
-    def select(self, index: int) -> None:
-        """Mark a patch without telling anyone."""
-        self._selected = index if 0 <= index < len(self._patches) else -1
-        self.setAccessibleDescription(self._patches[self._selected].title if self._selected >= 0 else "")
-        self.update()
-
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self._theme = theme
-        self.update()
+    def descriptions(self) -> list[str]:
+        """Return every patch in words."""
+        return [patch.title for patch in self._patches]
 
     def sizeHint(self) -> QSize:
         """Ask for two rows of patches."""
         return QSize(480, 190)
 
-    def patch_rect(self, index: int) -> QRectF:
+    def part_rect(self, index: int) -> QRectF:
         """Return where a picture is painted: the first one as high as all rows of the others."""
         across, side = self._arrangement()
         rows = -(-(len(self._patches) - 1) // across)
@@ -108,7 +86,7 @@ class PatchGrid(QWidget):
             "other": QPen(QColor(theme.muted), 1, Qt.PenStyle.DotLine),
         }
         for index, patch in enumerate(self._patches):
-            area = self.patch_rect(index)
+            area = self.part_rect(index)
             pixels = np.ascontiguousarray(patch.picture)
             height, width = pixels.shape[:2]
             painter.drawImage(area, QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888))
@@ -128,23 +106,10 @@ class PatchGrid(QWidget):
             painter.drawText(below, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop, words)
         painter.end()
 
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Tell which patch is under the cursor."""
-        self.hovered.emit(self._at(event))
-
-    def leaveEvent(self, event: QEvent) -> None:
-        """Tell that the cursor has left."""
-        self.hovered.emit(-1)
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Choose the patch under the cursor."""
-        if (index := self._at(event)) >= 0:
-            self._choose(index)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Move with the arrow keys."""
+    def reached(self, key: Qt.Key) -> int | None:
+        """Go to a neighbour, the first patch or the last."""
         across, last, here = self._arrangement()[0], len(self._patches) - 1, max(self._selected, 0)
-        wanted = {
+        return {
             Qt.Key.Key_Left: here - 1,
             Qt.Key.Key_Right: here + 1,
             # The large patch stands beside all rows.
@@ -152,20 +117,7 @@ class PatchGrid(QWidget):
             Qt.Key.Key_Down: here + across if 0 < here <= last - across else here,
             Qt.Key.Key_Home: 0,
             Qt.Key.Key_End: last,
-        }.get(Qt.Key(event.key()))
-        if wanted is None or last < 0:
-            super().keyPressEvent(event)
-        else:
-            self._choose(min(max(wanted, 0), last))
-
-    def _choose(self, index: int) -> None:
-        self.select(index)
-        self.chosen.emit(index)
-
-    def _at(self, event: QMouseEvent) -> int:
-        point = event.position()
-        areas = (self.patch_rect(index) for index in range(len(self._patches)))
-        return next((index for index, area in enumerate(areas) if area.contains(point)), -1)
+        }.get(key)
 
     def _words(self) -> float:
         return self.fontMetrics().height() + 4.0
