@@ -34,6 +34,7 @@ class DockHost(QObject):
         self._asked: tuple[Any, ...] | None = None
         self._computing = False
         self._dirty = False
+        self._was_seen: bool | None = None
         self._rested = QDeadlineTimer(0)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
@@ -74,18 +75,22 @@ class DockHost(QObject):
         return self.dock.isVisible() and not self.dock.visibleRegion().isEmpty()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Catch up when the dock comes into sight: shown, or its frame brought to the front."""
+        """Catch up when the dock comes into sight or goes: shown, hidden, its frame brought to the front."""
         if event.type() == QEvent.Type.ParentChange and watched is self.dock:
             frame = self.dock.parentWidget()
             if frame is not None:
                 frame.installEventFilter(self)
-        elif event.type() in (QEvent.Type.Show, QEvent.Type.Move, QEvent.Type.Resize):
+        elif event.type() in (QEvent.Type.Show, QEvent.Type.Hide, QEvent.Type.Move, QEvent.Type.Resize):
             # The frame has its new place when the event has been handled.
             self._look.start()
         return super().eventFilter(watched, event)
 
     def _update(self) -> None:
-        if self._scene is None or not self.seen:
+        seen = self.seen
+        if seen is not self._was_seen:
+            self._was_seen = seen
+            self.dock.set_seen(seen)
+        if self._scene is None or not seen:
             return
         if self._computing:
             self._dirty = True

@@ -118,6 +118,7 @@ class MainWindow(QMainWindow):
             dock.setObjectName(f"tab-{each.name}")
             dock.setWidget(each)
             dock.setToolTip(each.help)
+            dock.toggleViewAction().setToolTip(each.help)
             self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
             if first is None:
                 first = dock
@@ -156,6 +157,7 @@ class MainWindow(QMainWindow):
             themes.addAction(action)
             action.triggered.connect(partial(self._choose_theme, choice))
         self.docks_menu = self.menus["&View"].addMenu("&Panels")
+        self.docks_menu.setToolTipsVisible(True)
 
     def _fill_docks_menu(self) -> None:
         self.docks_menu.clear()
@@ -228,6 +230,7 @@ class MainWindow(QMainWindow):
         bar = self.statusBar()
         self.pixel_label = QLabel("")
         self.pixel_label.setObjectName("status-pixel")
+        self.pixel_label.setContentsMargins(6, 0, 0, 0)
         self.jobs_label = QLabel("")
         self.jobs_label.setObjectName("status-jobs")
         self.jobs_label.setProperty("role", "muted")

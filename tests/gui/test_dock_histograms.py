@@ -213,4 +213,6 @@ def test_numbers_and_ticks():
     ]  # fmt: skip
     assert [text for _, text in log_ticks(-2, 0, 0.9)] == ["0.01", "0.1", "1"]
     assert [text for _, text in log_ticks(-1, 0, 0.2)] == ["0.1", "0.2", "0.5", "1"]
-    assert log_ticks(0.31, 0.46, 0.05) == []
+    assert [text for _, text in log_ticks(0.31, 0.46, 0.03)] == ["2.2", "2.4", "2.6", "2.8"]
+    for place, text in log_ticks(-0.03, 0.01, 0.005):
+        assert place == pytest.approx(np.log10(float(text)))

@@ -117,11 +117,14 @@ def test_the_candidates_are_marked_in_the_exemplar(looker, column):
     assert looker.marks == ()
 
 
-def test_marks_go_when_the_dock_is_hidden(looker):
+def test_marks_go_when_the_dock_is_out_of_sight_and_come_back_with_it(looker):
     looker.look(3, 4)
-    assert looker.marks
-    looker.dock.hide()
+    marks = looker.marks
+    assert marks
+    looker.dock.set_seen(False)
     assert looker.marks == ()
+    looker.dock.set_seen(True)
+    assert looker.marks == marks
 
 
 def test_what_is_said(column):
@@ -341,6 +344,21 @@ def test_pointing_explains_and_marks_and_leaving_clears(explorer, qtbot):
     point_at(qtbot, explorer, first, -1, -1)
     assert dock.message == INVITATION
     assert not any(marks._lines.values())
+
+
+def test_marks_belong_to_the_tab_in_front(explorer, qtbot):
+    first, _ = ids(explorer)
+    pane = explorer.workspace.columns[first].pane
+    qtbot.mouseClick(pane.viewport(), LEFT, pos=pane.to_widget(10.5, 12.5).toPoint())
+    answered(qtbot, explorer)
+    marks = explorer.workspace.exemplar.pane._marks
+    qtbot.waitUntil(lambda: any(marks._lines.values()))
+    explorer.window.docks["histograms"].raise_()
+    qtbot.waitUntil(lambda: not any(marks._lines.values()))
+    explorer.window.docks["explain"].raise_()
+    qtbot.waitUntil(lambda: any(marks._lines.values()))
+    explorer.window.docks["explain"].close()
+    qtbot.waitUntil(lambda: not any(marks._lines.values()))
 
 
 def test_a_click_keeps_the_pixel_while_the_thresholds_change(explorer, qtbot):

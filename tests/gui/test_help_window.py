@@ -70,3 +70,15 @@ def test_all_tabs_are_explained():
     text = text_of("window")
     missing = [dock.title for dock in dock_classes() if f"**{dock.title}.**" not in text]
     assert not missing
+
+
+def test_code_is_not_cut_at_any_size_of_the_text(window, qtbot):
+    window.hide()
+    font = window.font()
+    font.setPointSizeF(1.35 * font.pointSizeF())
+    window.setFont(font)
+    window.open_page("de-bonet")
+    qtbot.waitUntil(lambda: window.list.count() > 0)
+    bar = window.browser.horizontalScrollBar()
+    screen = window.screen().availableSize().width()
+    qtbot.waitUntil(lambda: bar.maximum() == 0 or window.width() >= screen)

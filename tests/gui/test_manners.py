@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QGuiApplication, QImage
-from PySide6.QtWidgets import QApplication, QFileDialog, QTabBar
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QGuiApplication, QHelpEvent, QImage
+from PySide6.QtWidgets import QApplication, QFileDialog, QTabBar, QToolTip
 
 from tests.gui.conftest import drag, hb, ids, result_image, wait_idle
 from texlab import session as session_module
@@ -178,6 +178,23 @@ def test_teach_enlarges_the_text_in_plots_and_mosaics(qtbot: Any, explorer: Expl
         window.actions_by_name["layout-explore"].trigger()
     assert sizes() == pytest.approx(before)
     wait_idle(qtbot, explorer)
+
+
+def test_the_help_of_a_dock_does_not_cover_its_plots(qtbot: Any, explorer: Explorer) -> None:
+    window = explorer.window
+    frame = window.docks["histograms"]
+    frame.raise_()
+    wait_idle(qtbot, explorer)
+    body = frame.widget().body
+    try:
+        for widget, shown in ((frame, True), (body, False)):
+            centre = widget.rect().center() if widget is body else QPoint(20, 8)
+            QApplication.sendEvent(widget, QHelpEvent(QEvent.Type.ToolTip, centre, widget.mapToGlobal(centre)))
+            wanted = frame.toolTip() if shown else ""
+            qtbot.waitUntil(lambda wanted=wanted: QToolTip.text() == wanted)
+    finally:
+        QToolTip.hideText()
+    assert frame.toggleViewAction().toolTip() == frame.toolTip()
 
 
 def test_a_layout_brings_docks_home(qtbot: Any, explorer: Explorer) -> None:

@@ -392,7 +392,7 @@ def test_the_line_on_the_histogram_edits_the_cell(hand, qtbot):
     answer = hand.feed()
     view = hand.dock.distances
     assert view.share == pytest.approx(answer.passing(0.15))
-    assert hand.dock.passing.text() == f"lets {100 * answer.passing(0.15):.1f} % of all pairs through"
+    assert hand.dock.passing.text() == f"lets {answer.passing(0.15):.1%} of all pairs through"
     start = QPoint(round(view.line_x()), view.height() // 2)
     drag(qtbot, view, [start, start + QPoint(20, 0), start + QPoint(50, 0)])
     value = hand.table.cells[0][1]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtWidgets import QToolTip, QWidget
 
 if TYPE_CHECKING:
     from texlab.scene import Question, Scene
@@ -50,6 +50,16 @@ class Dock(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
+
+    def set_seen(self, seen: bool) -> None:
+        """Take note of whether any part of the dock can be seen; a tab behind another one cannot."""
+
+    def event(self, event: QEvent) -> bool:
+        """Keep the tooltip of the frame, which explains the whole dock, off the pictures and plots."""
+        if event.type() == QEvent.Type.ToolTip:
+            QToolTip.hideText()
+            return True
+        return super().event(event)
 
     def shut_down(self) -> None:
         """Stop and join what the dock started itself; the window is about to go."""

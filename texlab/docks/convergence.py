@@ -318,6 +318,9 @@ class ConvergenceDock(FramedDock):
         if answer is None:
             return
         words = []
+        places = answer.shown.x
+        if places.size:
+            x = float(places[np.argmin(np.abs(places - x))])
         for title, _, curve in answer.overlaid:
             if curve.x.size:
                 nearest = int(np.argmin(np.abs(curve.x - x)))

@@ -15,8 +15,6 @@ from texlab.scene import Question
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from PySide6.QtGui import QHideEvent
-
     from texlab.explaining.base import Explainer, ExplanationView
     from texlab.scene import ColumnScene, Mark, Probe, Scene
     from texlab.theme import Theme
@@ -47,7 +45,9 @@ class ExplainDock(FramedDock):
         self._probe: Probe | None = None
         self._size = (1, 1)
         self._shown: tuple[int, Question, Explainer] | None = None
+        self._marks: tuple[Mark, ...] = ()
         self._marked = False
+        self._seen = True
         self.pixel_column = self.add_number(
             "column", "x", "Column of the pixel; typing one keeps the pixel", (0, 0), self._typed
         )
@@ -93,7 +93,7 @@ class ExplainDock(FramedDock):
         explain = explainer.explain
 
         def compute(should_stop: Callable[[], bool]) -> tuple[Explainer, Any]:
-            return explainer, explain(result, row, place)
+            return explainer, explain(result, row, place, should_stop)
 
         question = Question((self.name, Same(result), row, place), compute)
         self._shown = (column.id, question, explainer)
@@ -117,15 +117,17 @@ class ExplainDock(FramedDock):
         super().present_nothing(self.why or INVITATION)
         self._mark(())
 
-    def hideEvent(self, event: QHideEvent) -> None:
-        """Take the marks away."""
-        super().hideEvent(event)
-        self._mark(())
+    def set_seen(self, seen: bool) -> None:
+        """Outline places in the exemplar only while what they belong to is seen."""
+        self._seen = seen
+        self._mark(self._marks)
 
     def _mark(self, marks: tuple[Mark, ...]) -> None:
-        if marks or self._marked:
-            self._marked = bool(marks)
-            self.intention.emit(lambda controller: controller.show_marks(marks))
+        self._marks = marks
+        shown = marks if self._seen else ()
+        if shown or self._marked:
+            self._marked = bool(shown)
+            self.intention.emit(lambda controller: controller.show_marks(shown))
 
     def _show_probe(self, probe: Probe | None, column: ColumnScene | None) -> None:
         self._probe = probe

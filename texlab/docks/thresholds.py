@@ -98,7 +98,6 @@ class ThresholdsDock(FramedDock):
         self.value.setStepType(QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
         self.value.setKeyboardTracking(False)
         self.value.setPrefix("T = ")
-        self.value.setFixedWidth(110)
         tip = "The threshold of the selected cells; while painting, the one that is painted (Alt+click picks it)"
         self.value.valueChanged.connect(self._value_set)
         self.add_control(self.value, "value", "Threshold", tip)
@@ -180,7 +179,7 @@ class ThresholdsDock(FramedDock):
             with QSignalBlocker(self.value):
                 self.value.setValue(value)
         share = self.distances.share
-        self.passing.setText("" if share is None else f"lets {100 * share:.1f} % of all pairs through")
+        self.passing.setText("" if share is None else f"lets {share:.1%} of all pairs through")
 
     def _rearrange(self) -> None:
         if self._column is not None and self.editor.view is not None:

@@ -62,7 +62,7 @@ class ExemplarView(QFrame):
         self.crop_button.setObjectName("crop-toggle")
         self.crop_button.setText("Crop")
         self.crop_button.setCheckable(True)
-        self.crop_button.setAutoRaise(True)
+        self.crop_button.setAutoRaise(False)
         self.crop_button.setToolTip(
             "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
             "with Shift they resize it."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, QUrl, Signal
+from PySide6.QtCore import QSignalBlocker, QSize, QUrl, Signal
 from PySide6.QtGui import QImage, QTextCursor, QTextDocument, QTextFormat
 from PySide6.QtWidgets import (
     QDialog,
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QShowEvent
 
 FIGURE_WIDTH = 720
+LETTERS = 140
 MARGIN = 16
 
 
@@ -99,10 +100,8 @@ class HelpWindow(QDialog):
         super().__init__(parent)
         self.setObjectName("help-window")
         self.setWindowTitle("TexLab help")
-        self.resize(1000, 720)
         self.list = QListWidget()
         self.list.setObjectName("help-list")
-        self.list.setMaximumWidth(220)
         self.browser = HelpBrowser()
         layout = QHBoxLayout()
         layout.addWidget(self.list)
@@ -124,10 +123,20 @@ class HelpWindow(QDialog):
 
     def open_page(self, name: str) -> None:
         """Show the window with a page; the first page when there is none of that name."""
+        if not self.isVisible():
+            self._make_room()
         self.show()
         self.raise_()
         if not self.browser.show_page(name):
             self.browser.show_page("index")
+
+    def _make_room(self) -> None:
+        """Be wide enough for the longest line of code, at any size of the text."""
+        letter = self.fontMetrics().averageCharWidth()
+        screen = self.screen().availableSize()
+        self.list.setFixedWidth(28 * letter)
+        wanted = self.size().expandedTo(QSize(LETTERS * letter, 3 * LETTERS * letter // 4))
+        self.resize(wanted.boundedTo(screen))
 
     def _mark(self, name: str) -> None:
         """Choose the page in the list, so that the list does not choose another one when it gets the focus."""

@@ -368,7 +368,15 @@ def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
                 place = power + float(np.log10(factor))
                 if low <= place <= high and all(abs(place - other) >= apart for other in ticks):
                     ticks.append(place)
-    return [(place, number(float(f"{10**place:.1g}"))) for place in sorted(ticks)]
+    if len(ticks) > 1 or high <= low:
+        return [(place, number(float(f"{10**place:.1g}"))) for place in sorted(ticks)]
+    # Too little lies between the limits: even steps of 1, 2 or 5 instead of the round values of a logarithm.
+    bottom, top = 10.0**low, 10.0**high
+    least = max(top - bottom, 1e-300) / max(1, int((high - low) / apart))
+    power = 10.0 ** np.floor(np.log10(least))
+    step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * (1 - 1e-9))
+    values = [k * step for k in range(int(np.ceil(bottom / step)), int(np.floor(top / step)) + 1)]
+    return [(float(np.log10(value)), number(float(f"{value:.6g}"))) for value in values]
 
 
 def number(value: float) -> str:
