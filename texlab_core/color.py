@@ -6,6 +6,7 @@ Reference: Heeger and Bergen 1995, section 2.5; Pitié, Kokaram and Dahyot 2007 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -57,9 +58,13 @@ class ColourAxes:
 
     def to_axes(self, pixels: NDArray[Any]) -> NDArray[np.float32]:
         """Return planes (A, H, W) float32 of mean 0 and covariance 1: M (x - mean) with M = S^-1 U^t."""
+        return finish(self.to_axes_task(pixels))
+
+    def to_axes_task(self, pixels: NDArray[Any]) -> Task[NDArray[np.float32]]:
+        """Do :meth:`to_axes` in pieces."""
         matrix = self.directions / self.spread[:, None]
         offset = -np.sum(matrix * self.mean, axis=1)
-        return finish(combine(np.moveaxis(pixels, -1, 0), matrix, offset))
+        return combine(np.moveaxis(pixels, -1, 0), matrix, offset)
 
     def from_axes(self, planes: Sequence[NDArray[np.float32]]) -> Task[FloatImage]:
         """Return the colours (H, W, C) float32 of A planes (H, W): M^-1 y + mean."""
@@ -77,10 +82,27 @@ def principal_axes(pixels: NDArray[Any]) -> ColourAxes:
     pixels
         (H, W, C) in [0, 1]; mean and covariance are computed in float64.
     """
+    return finish(principal_axes_task(pixels))
+
+
+def principal_axes_task(pixels: NDArray[Any]) -> Task[ColourAxes]:
+    """Do :func:`principal_axes` in pieces."""
     flat = pixels.reshape(-1, pixels.shape[-1])
-    mean = flat.mean(axis=0, dtype=np.float64)
-    centred = np.ascontiguousarray((flat - mean).T)
-    covariance = np.array([[np.mean(one * other) for other in centred] for one in centred])
+    many, channels = flat.shape
+    total = np.zeros(channels)
+    for rows in row_blocks(flat.shape):
+        # Row after row, whatever the blocks.
+        total = np.add.reduce(np.vstack([total, flat[rows]]), axis=0)
+        yield flat[rows].size
+    mean = total / many
+    centred = np.empty((channels, many))
+    for rows in row_blocks(flat.shape):
+        centred[:, rows] = (flat[rows] - mean).T
+        yield flat[rows].size
+    covariance = np.empty((channels, channels))
+    for one, other in combinations_with_replacement(range(channels), 2):
+        covariance[one, other] = covariance[other, one] = np.mean(centred[one] * centred[other])
+        yield many
     values, vectors = np.linalg.eigh(covariance)
     spread = np.sqrt(np.maximum(values[::-1], 0))
     directions = vectors.T[::-1]

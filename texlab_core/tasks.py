@@ -28,9 +28,14 @@ Task = Generator[int, None, ResultT]
 PATIENCE_S = 0.01
 
 
-def finish(task: Task[ResultT]) -> ResultT:
-    """Run a task to its end, here and at once."""
+def go_on() -> None:
+    """Do not stop."""
+
+
+def finish(task: Task[ResultT], look: Callable[[], None] = go_on) -> ResultT:
+    """Run a task to its end, here and at once; ``look`` is called between its pieces and may raise to stop."""
     while True:
+        look()
         try:
             next(task)
         except StopIteration as end:

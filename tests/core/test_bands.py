@@ -128,3 +128,62 @@ def test_looks_between_the_bands():
     calls.clear()
     with pytest.raises(Stop):
         bands.amplify(noise(16, 16, 1), "steerable", 2, 4, {BandKey("highpass"): 2.0}, "luma", look)
+
+
+class Stop(Exception):
+    """Nobody waits any more."""
+
+
+def stops_at(count):
+    """Return a function that stops at its ``count``-th call, and the list of its calls."""
+    calls = []
+
+    def look():
+        calls.append(1)
+        if len(calls) == count:
+            raise Stop
+
+    return look, calls
+
+
+KINDS = ["steerable", "laplacian", "gaussian", "oriented", "gabor", "gabor magnitude", "filter bank"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_splitting_can_be_stopped_at_every_look(kind):
+    plane = noise(40, 48)
+    # What is kept for the next time is made first: it looks too.
+    bands.split(plane, kind, 2, 3)
+    look, calls = stops_at(0)
+    whole = bands.split(plane, kind, 2, 3, look)
+    total = len(calls)
+    assert total > len(whole)
+    for count in sorted({1, 2, total // 3, total // 2, total}):
+        look, calls = stops_at(count)
+        with pytest.raises(Stop):
+            bands.split(plane, kind, 2, 3, look)
+        assert len(calls) == count
+
+
+@pytest.mark.parametrize("kind", ["steerable", "gabor"])
+def test_looks_come_within_the_transform_of_a_large_plane(kind):
+    # Mirrored it is transformed in blocks of rows and of columns, between which there is a look.
+    look, calls = stops_at(0)
+    bands.split(noise(800, 801), kind, 1, 1, look)
+    assert len(calls) > 60
+
+
+@pytest.mark.parametrize("kind", bands.COLLAPSIBLE)
+def test_amplifying_can_be_stopped_at_every_look(kind):
+    image, gains = noise(30, 40, 3), {BandKey("lowpass", 2): 0.5}
+    bands.amplify(image, kind, 2, 2, gains)
+    look, calls = stops_at(0)
+    bands.amplify(image, kind, 2, 2, gains, "luma", look)
+    total = len(calls)
+    # Two levels taken apart and put together, for each of three channels.
+    assert total >= 3 * 4
+    for count in (1, total // 2, total):
+        look, calls = stops_at(count)
+        with pytest.raises(Stop):
+            bands.amplify(image, kind, 2, 2, gains, "luma", look)
+        assert len(calls) == count

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from texlab_core.color import combine, interleave, principal_axes, transport_palette
+from texlab_core.color import combine, interleave, principal_axes, principal_axes_task, transport_palette
 from texlab_core.run import Streams
 from texlab_core.tasks import finish
 
@@ -107,3 +107,24 @@ def test_transport_ends_with_the_channels_own_histograms_and_follows_its_seed():
 def test_transport_of_the_palette_itself_changes_nothing_but_rounding():
     image, _ = colours()
     np.testing.assert_allclose(finish(transport_palette(image, image, 4, Streams(0))), image, atol=1e-5)
+
+
+def test_axes_in_pieces_have_the_bits_of_the_whole():
+    # More than two blocks of rows; a strong offset shows any other order of summation.
+    image, _ = colours((500, 701))
+    image = image * np.float32(3.7) + np.float32(100)
+    flat = image.reshape(-1, 3)
+    mean = flat.mean(axis=0, dtype=np.float64)
+    centred = (flat - mean).T.copy()
+    covariance = np.array([[np.mean(one * other) for other in centred] for one in centred])
+    pieces = principal_axes_task(image)
+    most = 0
+    while True:
+        try:
+            most = max(most, next(pieces))
+        except StopIteration as end:
+            axes = end.value
+            break
+    assert most <= 2**19
+    np.testing.assert_array_equal(axes.mean, mean)
+    np.testing.assert_array_equal(axes.spread, np.sqrt(np.linalg.eigh(covariance)[0][::-1]))

@@ -85,3 +85,20 @@ def test_a_ramp_loses_its_jump_and_a_periodic_image_nothing():
     closed[-1], closed[:, -1] = closed[0], closed[:, 0]
     closed[-1, -1] = closed[0, 0]
     np.testing.assert_allclose(fourier.periodic_component(closed), closed, atol=1e-14)
+
+
+@pytest.mark.parametrize("shape", [(64, 64), (37, 40), (1, 9)])
+@pytest.mark.parametrize("kind", [np.float32, np.complex64])
+def test_whole_spectra_in_pieces_are_the_transform(monkeypatch, shape, kind):
+    image = picture(shape).astype(kind) * (1 if kind == np.float32 else 1 + 2j)
+    for large in (fourier.LARGE, 0):
+        monkeypatch.setattr(fourier, "LARGE", large)
+        spectrum = finish(fourier.fft2(image))
+        assert spectrum.dtype == np.complex64
+        np.testing.assert_allclose(spectrum, np.fft.fft2(image), atol=1e-3)
+        np.testing.assert_allclose(finish(fourier.ifft2(spectrum)), image, atol=1e-5)
+
+
+def test_the_periodic_part_is_found_in_pieces():
+    pieces = list(fourier.periodic_component_task(picture((32, 48))))
+    assert len(pieces) >= 4

@@ -260,3 +260,18 @@ def test_the_coarsest_residual_keeps_two_samples_a_side(pyramid):
         assert -(-side // 2**levels) >= min(side, 2)
         # One level more would leave a single sample, or less than two in the steerable pyramid's spectrum.
         assert side < 2 ** (levels + 2) if pyramid == "steerable" else -(-side // 2 ** (levels + 1)) <= 1
+
+
+def test_every_piece_of_a_large_sort_is_a_step():
+    # 725 x 725 is two pieces of a sort: in each of them seven passes on each of three axes; a step every 2^18
+    # samples made two or three of them.
+    rng = np.random.default_rng(7)
+    exemplar = as_exemplar(rng.random((40, 40, 3), np.float32))
+    params = HeegerBergenParams(scales=1, orientations=1, iterations=0)
+    stages = []
+    run(
+        Job(method="heeger-bergen", inputs={"exemplar": exemplar}, params=params, size=(725, 725)),
+        lambda step: stages.append(step.stage),
+        threads=1,
+    )
+    assert stages.count("noise") >= 3 * 2 * 7

@@ -96,7 +96,7 @@ def test_pieces_give_the_bits_of_the_whole(values):
     whole, pieces = values.copy(), values.copy()
     change = ranks.match(whole, target, np.uint64(8)) / values.size
     steps = histogram.match_ranks_in_place(pieces, target, 8)
-    for _ in range(6 * -(-values.size // ranks.CHUNK)):
+    for _ in range(7 * -(-values.size // ranks.CHUNK)):
         next(steps)
     with pytest.raises(StopIteration) as end:
         next(steps)

@@ -179,3 +179,26 @@ def test_luminance_weighs_the_channels() -> None:
     pixels = np.zeros((2, 2, 3), np.float32)
     pixels[0, 0, 0] = pixels[0, 1, 1] = pixels[1, 0, 2] = 1
     np.testing.assert_allclose(gray_plane(pixels), [[0.299, 0.587], [0.114, 0]], atol=1e-6)
+
+
+def test_a_spectrum_can_be_stopped_between_its_parts():
+    class Stop(Exception):
+        pass
+
+    image = np.random.default_rng(2).random((1500, 1500, 3), np.float32)
+    moments = []
+    whole = power_spectrum(image, lambda: moments.append(1))
+    # Luminance, the mean, and blocks of at most 2^19 samples of rows, columns and powers.
+    assert len(moments) > 8
+    assert whole.variance == pytest.approx(float(gray_plane(image).var(dtype=np.float64)), rel=1e-5)
+    for count in (1, 2, len(moments)):
+        seen = []
+
+        def look(seen=seen, count=count):
+            seen.append(1)
+            if len(seen) == count:
+                raise Stop
+
+        with pytest.raises(Stop):
+            power_spectrum(image, look)
+        assert len(seen) == count

@@ -101,3 +101,24 @@ def test_blocks_cover_every_row_once(shape):
     for side in shape[1:]:
         rest *= side
     assert all(block.stop - block.start == 1 or (block.stop - block.start) * rest <= 8 for block in blocks)
+
+
+def test_finish_looks_before_every_piece_and_can_be_stopped():
+    class Stop(Exception):
+        pass
+
+    pieces, looks = [], []
+
+    def work():
+        for piece in range(5):
+            pieces.append(piece)
+            yield 1
+
+    def look():
+        looks.append(len(pieces))
+        if len(pieces) == 3:
+            raise Stop
+
+    with pytest.raises(Stop):
+        finish(work(), look)
+    assert looks == [0, 1, 2, 3]

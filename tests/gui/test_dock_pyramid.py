@@ -6,8 +6,11 @@ from dock_scenes import check_controls, click, column_of, feed, hover, noise, sc
 from PySide6.QtCore import Qt
 
 from texlab import colouring
+from texlab.bands.controls import BandCache, PyramidSettings
+from texlab.bands.pictures import PyramidPictures, PyramidRequest
 from texlab.docks.pyramid import PyramidDock
 from texlab.pictures import to_picture
+from texlab.recent import Recent
 from texlab.theme import DARK, LIGHT
 from texlab_core.errors import Cancelled
 from texlab_core.stats.bands import amplify, projection, split
@@ -217,6 +220,29 @@ def test_nothing_is_computed_twice(dock, scene, qtbot):
 def test_stops_when_told(dock, scene):
     with pytest.raises(Cancelled):
         dock.question(scene).compute(lambda: True)
+
+
+def test_stops_between_the_bands_of_both_mosaics(images):
+    request = PyramidRequest(PyramidSettings("laplacian", 3, 1))
+    asked = []
+
+    def answer(stop_at):
+        asked.clear()
+
+        def should_stop():
+            asked.append(1)
+            return len(asked) == stop_at
+
+        return PyramidPictures(BandCache(), Recent(4)).answer(*images, request, should_stop)
+
+    bands = len(answer(0).exemplar.bands)
+    many = len(asked)
+    # Taking apart and painting of both, and the scales of the exemplar.
+    assert many >= 5 * bands
+    for count in range(1, many + 1):
+        with pytest.raises(Cancelled):
+            answer(count)
+        assert len(asked) == count
 
 
 def test_smaller_result_lacks_coarse_levels(dock, images):

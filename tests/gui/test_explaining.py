@@ -10,6 +10,7 @@ from texlab.explaining import efros_leung, explainer_for, heeger_bergen
 from texlab.pictures import to_picture
 from texlab.scene import Mark, Probe, Scene
 from texlab.theme import DARK, LIGHT
+from texlab_core.errors import Cancelled
 from texlab_core.images import as_exemplar
 from texlab_core.inputs import ImageInput, hash_arrays
 from texlab_core.neighbourhood.explain import explain
@@ -233,3 +234,29 @@ def test_the_dock_shows_bars_and_the_picture_of_the_chosen_one(dock, matched, qt
 def test_every_kind_finds_its_explainer(grown, matched):
     assert explainer_for(grown.details) is efros_leung.EXPLAINER
     assert explainer_for(matched.details) is heeger_bergen.EXPLAINER
+
+
+def test_nobody_waits_for_a_picture_to_be_taken_apart():
+    result = result_of("heeger-bergen", exemplar=texture(1), scales=2, iterations=1)
+    asked = []
+
+    def total(stop_at):
+        asked.clear()
+
+        def should_stop():
+            asked.append(1)
+            return len(asked) == stop_at
+
+        return should_stop
+
+    heeger_bergen.take_apart(result, total(0))
+    many = len(asked)
+    # Apart from the picture as a whole, every subband is looked for twice: when it is found and when it is painted.
+    assert many > 2 * 10
+    for count in (1, many // 2, many):
+        with pytest.raises(Cancelled):
+            heeger_bergen.EXPLAINER.explain(result, 3, 4, total(count))
+        assert len(asked) == count
+    # What was stopped is not kept: the next one is answered in full.
+    explained = heeger_bergen.EXPLAINER.explain(result, 3, 4, total(0))
+    assert explained.value == pytest.approx(result.image[3, 4, 0], abs=1e-5)

@@ -122,17 +122,18 @@ class PyramidPictures:
         should_stop
             Asked between the parts; raises ``Cancelled`` when it says so.
         """
+        look = partial(_check, should_stop)
         bands = self._bands.bands(exemplar, exemplar, request.channel, request.settings, should_stop)
-        scales = band_scales(bands, request)
-        first = self._mosaic(exemplar, bands, scales, request, dict(request.gains) if request.editing else {})
-        _check(should_stop)
+        scales = band_scales(bands, request, look)
+        gains = dict(request.gains) if request.editing else {}
+        first = self._mosaic(exemplar, bands, scales, request, gains, look)
         if request.editing:
-            return PyramidAnswer(request, first, edited=self._edited(exemplar, request, should_stop))
+            return PyramidAnswer(request, first, edited=self._edited(exemplar, request, look))
         others: tuple[Band, ...] = ()
         second = None
         if result is not None:
             others = self._bands.bands(result, exemplar, request.channel, request.settings, should_stop)
-            second = self._mosaic(result, others, scales, request, {})
+            second = self._mosaic(result, others, scales, request, {}, look)
         return PyramidAnswer(request, first, second, _large(bands, others, scales, request))
 
     def _mosaic(
@@ -142,6 +143,7 @@ class PyramidPictures:
         scales: dict[BandKey, Scale],
         request: PyramidRequest,
         gains: dict[BandKey, float],
+        look: Callable[[], None],
     ) -> MosaicPicture:
         muted = frozenset(key for key, gain in gains.items() if gain == 0)
         looks = (request.common, request.layout, request.columns, request.canvas, muted)
@@ -152,17 +154,19 @@ class PyramidPictures:
             arrange = mosaic.equal_tiles if request.layout == "equal" else mosaic.pyramid_tiles
             layout = arrange(shapes, request.columns)
             # A smaller image has fewer levels: its residual is coloured like the exemplar's.
-            pictures = [colour_band(band, scales.get(band.key, scales[_last(scales)])) for band in bands]
-            for place, band in enumerate(bands):
-                if band.key in muted:
-                    pictures[place] = mosaic.dim(pictures[place], gap)
+            pictures = []
+            for band in bands:
+                look()
+                picture = colour_band(band, scales.get(band.key, scales[_last(scales)]))
+                pictures.append(mosaic.dim(picture, gap) if band.key in muted else picture)
+            look()
             return MosaicPicture(bands, layout, layout.draw(pictures, gap))
 
         # The bands are kept by the cache above, so their identity stands for image, plane and pyramid.
         return self._recent.get((Same(bands), tuple(scales.items()), looks), make)
 
     def _edited(
-        self, exemplar: FloatImage, request: PyramidRequest, should_stop: Callable[[], bool]
+        self, exemplar: FloatImage, request: PyramidRequest, look: Callable[[], None]
     ) -> tuple[Picture, Picture]:
         settings = request.settings
         changed = amplify(
@@ -172,20 +176,25 @@ class PyramidPictures:
             settings.orientations,
             dict(request.gains),
             request.channel,
-            partial(_check, should_stop),
+            look,
         )
         return to_picture(exemplar), to_picture(np.clip(changed, 0, 1))
 
 
-def band_scales(bands: tuple[Band, ...], request: PyramidRequest) -> dict[BandKey, Scale]:
+def band_scales(
+    bands: tuple[Band, ...], request: PyramidRequest, look: Callable[[], None]
+) -> dict[BandKey, Scale]:
     """Return the colour scale of every band, from the exemplar's.
 
     Signed bands are symmetric around zero up to three standard deviations: their own, or the largest of all; a
     band that holds nothing but rounding gets no colours.
     Magnitudes begin at zero. Low-pass bands are gray from 0 to 1; those of a principal axis as far as three
-    standard deviations go.
+    standard deviations go. ``look`` is called between the bands and may raise to stop.
     """
-    spreads = {band.key: _spread(band) for band in bands}
+    spreads = {}
+    for band in bands:
+        look()
+        spreads[band.key] = _spread(band)
     largest = max((spreads[band.key] for band in bands if band.span != "gray"), default=0.0)
     scales = {}
     for band in bands:

@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from texlab_core.steps import Result
 
 
+def never() -> bool:
+    """Do not stop."""
+    return False
+
+
 class ExplanationView(QWidget):
     """Shows explanations of one kind.
 
@@ -43,8 +48,9 @@ class Explainer:
     details
         Type of the ``details`` of the results that it can explain.
     explain
-        Given a result and a row and a column of its image, returns what the view shows. It is called in a
-        background thread and answers within some milliseconds.
+        Given a result, a row and a column of its image, and a function that says whether nobody waits for the
+        answer any more, returns what the view shows; raises ``Cancelled`` when that function says so. It is called
+        in a background thread and answers within some milliseconds, but for the first pixel of a result.
     make_view
         Makes the view, once.
     help
@@ -52,6 +58,6 @@ class Explainer:
     """
 
     details: type
-    explain: Callable[[Result, int, int], Any]
+    explain: Callable[[Result, int, int, Callable[[], bool]], Any]
     make_view: Callable[[], ExplanationView]
     help: str = ""

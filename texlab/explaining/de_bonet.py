@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from texlab.explaining.base import Explainer, ExplanationView
+from texlab.explaining.base import Explainer, ExplanationView, never
 from texlab.explaining.levels_view import LevelsView, Tile
 from texlab.explaining.structure_view import Structure, StructureView
 from texlab.explaining.words import Words
@@ -21,6 +21,8 @@ from texlab_core.multiresolution.explain import explain
 from texlab_core.multiresolution.report import DeBonetDetails
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.scene import Picture
     from texlab.theme import Theme
     from texlab_core.multiresolution.explain import ExplainedLevel, Explanation, Strictest
@@ -55,7 +57,9 @@ class ExplainedPixel:
     marked: tuple[tuple[int, ...], ...]
 
 
-def explain_pixel(result: Result, row: int, column: int) -> ExplainedPixel:
+def explain_pixel(
+    result: Result, row: int, column: int, should_stop: Callable[[], bool] = never
+) -> ExplainedPixel:
     """Explain a pixel of a De Bonet result (in a background thread)."""
     explanation = explain(result.details.sampling, row, column)
     pictures = _pictures.get(Same(result.model), lambda: level_pictures(result))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtWidgets import QLabel, QVBoxLayout
 
-from texlab.explaining.base import Explainer, ExplanationView
+from texlab.explaining.base import Explainer, ExplanationView, never
 from texlab.explaining.patch_grid import Patch, PatchGrid
 from texlab.pictures import to_picture
 from texlab.scene import Mark
@@ -18,6 +18,8 @@ from texlab_core.neighbourhood.evidence import UNITS
 from texlab_core.neighbourhood.explain import Explanation, Grown, explain
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from texlab.explaining.patch_grid import Frame
@@ -56,7 +58,9 @@ class ExplainedPixel:
     places: tuple[tuple[int, int] | None, ...]
 
 
-def explain_pixel(result: Result, row: int, column: int) -> ExplainedPixel:
+def explain_pixel(
+    result: Result, row: int, column: int, should_stop: Callable[[], bool] = never
+) -> ExplainedPixel:
     """Explain a pixel of a grown result (in a background thread)."""
     grown: Grown = result.details
     found = explain(grown, row, column, best=BEST)

@@ -11,14 +11,17 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from texlab.colouring import diverging
 from texlab.explaining.band_bars import BandBars, Bar
-from texlab.explaining.base import Explainer, ExplanationView
+from texlab.explaining.base import Explainer, ExplanationView, never
 from texlab.recent import Recent, Same
 from texlab.widgets.plots import PicturePane, number, pg
+from texlab_core.errors import Cancelled
 from texlab_core.marginals.contributions import contributions
 from texlab_core.methods.heeger_bergen import Convergence, HeegerBergenParams
 from texlab_core.stats.bands import LUMA, names
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from texlab.scene import Picture
@@ -91,30 +94,38 @@ def luma(image: FloatImage) -> NDArray[np.float32]:
     return np.ascontiguousarray(image @ np.array(LUMA, np.float32))
 
 
-def take_apart(result: Result) -> Built:
-    """Find what built a picture."""
+def take_apart(result: Result, should_stop: Callable[[], bool] = never) -> Built:
+    """Find what built a picture; raises ``Cancelled`` when ``should_stop`` says so."""
+
+    def look() -> None:
+        if should_stop():
+            raise Cancelled
+
     params = result.job.params
     assert isinstance(params, HeegerBergenParams)
     plane = luma(result.image)
     mean = float(plane.mean(dtype=np.float64))
-    found = contributions(plane, params.pyramid, params.scales, params.orientations)
+    found = contributions(plane, params.pyramid, params.scales, params.orientations, look)
     step = math.ceil(math.sqrt(plane.size / MOST_PIXELS))
     pictures = []
     for index, key in enumerate(found.keys):
-        shown = found.plane(index)[::step, ::step]
+        look()
+        shown = found.plane(index, look)[::step, ::step]
         shown = shown - np.float32(mean) if key.kind == "lowpass" else shown
         pictures.append(diverging(shown, SPREADS * float(found.spreads[index]) or 1.0))
     return Built(found, mean, tuple(pictures), step)
 
 
-def explain_pixel(result: Result, row: int, column: int) -> ExplainedPixel:
+def explain_pixel(
+    result: Result, row: int, column: int, should_stop: Callable[[], bool] = never
+) -> ExplainedPixel:
     """Explain a pixel of a Heeger-Bergen result (in a background thread).
 
-    The first pixel of a result takes the picture apart.
+    The first pixel of a result takes the picture apart, which ``should_stop`` can end.
     """
     params = result.job.params
     assert isinstance(params, HeegerBergenParams)
-    built = _built.get(Same(result), lambda: take_apart(result))
+    built = _built.get(Same(result), lambda: take_apart(result, should_stop))
     keys = built.found.keys
     values = built.found.at(row, column)
     value = float(values.sum())

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.color import ColourAxes, principal_axes
+from texlab_core.color import ColourAxes, principal_axes_task
 from texlab_core.stats.histogram import Sample, sorted_sample
 from texlab_core.transforms import fourier, gaussian, laplacian, steerable
-from texlab_core.transforms.fourier import periodic_component
+from texlab_core.transforms.fourier import periodic_component_task
 from texlab_core.transforms.steerable import BandKey, Transform
 
 if TYPE_CHECKING:
@@ -144,12 +144,10 @@ def analyze(
     axes, planes = yield from _planes(image)
     models = []
     for plane in planes:
-        pixels = target(plane, 0.0)
-        yield plane.size
+        pixels = yield from target(plane, 0.0)
         bands: dict[BandKey, Target] = {}
         floor = pixels.spread * FAINT
-        whole = periodic_component(plane) if border == "periodic" else plane
-        yield plane.size
+        whole = (yield from periodic_component_task(plane)) if border == "periodic" else plane
         if pyramid == "steerable":
             yield from _steerable_targets(whole, levels, orientations, border == "reflect", floor, bands, team)
         else:
@@ -163,14 +161,18 @@ def _planes(image: FloatImage) -> Task[tuple[ColourAxes | None, list[Plane]]]:
     if np.all(image == image[..., :1]):
         constant = image.min() == image.max()
         return None, [] if constant else [np.ascontiguousarray(image[..., 0])]
-    axes = principal_axes(image)
     yield image.size
-    return axes, list(axes.to_axes(image))
+    axes = yield from principal_axes_task(image)
+    return axes, list((yield from axes.to_axes_task(image)))
 
 
-def target(values: Plane, floor: float) -> Target:
+def target(values: Plane, floor: float) -> Task[Target]:
     """Return the values as a target; its spread is not below ``floor``."""
-    return Target(sorted_sample(values), max(float(values.std(dtype=np.float64)), floor))
+    sample = sorted_sample(values)
+    yield values.size
+    spread = float(values.std(dtype=np.float64))
+    yield values.size
+    return Target(sample, max(spread, floor))
 
 
 def _steerable_targets(
@@ -190,7 +192,8 @@ def _steerable_targets(
     def task(key: BandKey) -> Task[tuple[BandKey, Target]]:
         band = yield from transform.band_task(spectrum, key)
         yield band.size
-        return key, target(steerable.quadrant(band, plane.shape, key.level) if mirrored else band, floor)
+        kept = steerable.quadrant(band, plane.shape, key.level) if mirrored else band
+        return key, (yield from target(kept, floor))
 
     def accept(found: tuple[BandKey, Target]) -> tuple[()]:
         bands[found[0]] = found[1]
@@ -209,10 +212,9 @@ def _laplacian_targets(
     bands: dict[BandKey, Target],
 ) -> Task[None]:
     for level in range(levels):
-        bands[BandKey("lowpass", level)] = target(plane, floor)
-        yield plane.size
+        bands[BandKey("lowpass", level)] = yield from target(plane, floor)
         band, coarser = laplacian.build(plane, 1, "reflect" if border == "reflect" else "periodic", mode)
-        bands[BandKey("bandpass", level)] = target(band, floor)
         yield plane.size
+        bands[BandKey("bandpass", level)] = yield from target(band, floor)
         plane = coarser
-    bands[BandKey("lowpass", levels)] = target(plane, floor)
+    bands[BandKey("lowpass", levels)] = yield from target(plane, floor)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from texlab_core.marginals.analysis import Pyramid, band_keys, expansion, max_levels
-from texlab_core.tasks import finish
+from texlab_core.tasks import finish, go_on
 from texlab_core.transforms import laplacian
 from texlab_core.transforms.steerable import BandKey, Transform
 
@@ -44,12 +44,12 @@ class Contributions(Protocol):
     def at(self, row: int, column: int) -> NDArray[np.float64]:
         """Return what every subband adds to one pixel, (bands,) float64."""
 
-    def plane(self, index: int) -> Plane:
-        """Return what one subband adds to every pixel, (H, W) float32."""
+    def plane(self, index: int, look: Callable[[], None] = go_on) -> Plane:
+        """Return what one subband adds to every pixel, (H, W) float32; ``look`` may raise to stop."""
 
 
 def contributions(
-    plane: Plane, pyramid: Pyramid, scales: int, orientations: int, look: Callable[[], None] = lambda: None
+    plane: Plane, pyramid: Pyramid, scales: int, orientations: int, look: Callable[[], None] = go_on
 ) -> Contributions:
     """Prepare the contributions of the subbands of a plane.
 
@@ -60,20 +60,21 @@ def contributions(
     pyramid, scales, orientations
         As in the method's parameters; fewer scales are used when the plane is too small.
     look
-        Called between the subbands; may raise to stop.
+        Called between the subbands, and between pieces of large ones; may raise to stop.
     """
     levels = min(scales, max_levels(plane.shape, pyramid))
     if pyramid == "steerable":
         return _steerable(plane, levels, orientations, look)
     mode = expansion(pyramid)
-    bands = laplacian.build(plane, levels, "periodic", mode)
-    planes = np.empty((len(bands), *plane.shape), np.float32)
+    bands = laplacian.build(plane, levels, "periodic", mode, look=look)
+    planes, spreads = np.empty((len(bands), *plane.shape), np.float32), []
     for index in range(len(bands)):
         look()
         lone = [band if place == index else np.zeros_like(band) for place, band in enumerate(bands)]
-        planes[index] = laplacian.collapse(lone, "periodic", mode)
-    spreads = planes.std(axis=(1, 2), dtype=np.float64)
-    return _Planes(band_keys(pyramid, levels, orientations), spreads, planes)
+        planes[index] = laplacian.collapse(lone, "periodic", mode, look=look)
+        look()
+        spreads.append(planes[index].std(dtype=np.float64))
+    return _Planes(band_keys(pyramid, levels, orientations), np.array(spreads), planes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +92,7 @@ class _Planes:
     def at(self, row: int, column: int) -> NDArray[np.float64]:
         return self.planes[:, row, column].astype(np.float64)
 
-    def plane(self, index: int) -> Plane:
+    def plane(self, index: int, look: Callable[[], None] = go_on) -> Plane:
         plane: Plane = self.planes[index]
         return plane
 
@@ -123,20 +124,21 @@ class _Spectra:
             found.append((down @ (part @ across.astype(part.dtype))).real)
         return np.array(found, np.float64)
 
-    def plane(self, index: int) -> Plane:
+    def plane(self, index: int, look: Callable[[], None] = go_on) -> Plane:
         total = self.transform.empty_sum()
-        finish(self.transform.add_task(total, self.keys[index], self.parts[index]))
-        plane: Plane = self.transform.inverse(total)
+        finish(self.transform.add_task(total, self.keys[index], self.parts[index]), look)
+        plane: Plane = self.transform.inverse(total, look)
         return plane
 
 
 def _steerable(plane: Plane, levels: int, orientations: int, look: Callable[[], None]) -> _Spectra:
     transform = Transform.of(plane, levels, orientations)
-    spectrum = transform.forward(plane)
+    spectrum = transform.forward(plane, look)
     parts, spreads = [], []
     for key in transform.keys:
         look()
-        part = finish(transform.filtered_task(key, transform.band(spectrum, key)))
+        part = finish(transform.filtered_task(key, transform.band(spectrum, key, look)), look)
+        look()
         # Parseval; the first entry is the mean.
         power = float((np.square(np.abs(part), dtype=np.float64) @ _times(part, plane.shape[1])).sum())
         spreads.append(np.sqrt(max(0.0, power - abs(complex(part[0, 0])) ** 2)))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from texlab_core.stats import filter_bands
+from texlab_core.tasks import go_on
 from texlab_core.transforms import gaussian, laplacian, steerable
 from texlab_core.transforms.steerable import BandKey
 
@@ -34,10 +35,6 @@ CHANNELS: tuple[Channel, ...] = get_args(Channel)
 
 # ITU-R BT.601, for values as stored.
 LUMA = (0.299, 0.587, 0.114)
-
-
-def _go_on() -> None:
-    """Do not stop."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,7 +134,7 @@ def split(
     kind: PyramidKind,
     levels: int,
     orientations: int,
-    look: Callable[[], None] = _go_on,
+    look: Callable[[], None] = go_on,
 ) -> tuple[Band, ...]:
     """Split a plane into its subbands, from fine to coarse; fewer levels when the plane is too small.
 
@@ -153,22 +150,22 @@ def split(
         Levels besides the residuals, where the kind is one of ``WITH_SCALES``, and orientations, of
         ``WITH_ORIENTATIONS``.
     look
-        Called between the bands; may raise to stop.
+        Called between the bands, and between pieces of large ones; may raise to stop.
     """
     look()
     levels = min(levels, most_levels(plane.shape, kind))
     planes: Iterable[NDArray[np.float32]]
     match kind:
         case "steerable":
-            planes = _reflected_bands(plane, levels, orientations)
+            planes = _reflected_bands(plane, levels, orientations, look)
         case "oriented":
-            planes = filter_bands.derived(plane, levels, orientations)
+            planes = filter_bands.derived(plane, levels, orientations, look)
         case "filter bank":
-            planes = filter_bands.spots_and_bars(plane, levels)
+            planes = filter_bands.spots_and_bars(plane, levels, look)
         case "gabor" | "gabor magnitude":
-            planes = filter_bands.gabor(plane, magnitude=kind == "gabor magnitude")
+            planes = filter_bands.gabor(plane, magnitude=kind == "gabor magnitude", look=look)
         case _:
-            planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels)
+            planes = (laplacian if kind == "laplacian" else gaussian).build(plane, levels, look=look)
     bands = []
     for key, each in zip(band_keys(kind, levels, orientations), planes, strict=True):
         look()
@@ -176,13 +173,15 @@ def split(
     return tuple(bands)
 
 
-def _reflected_bands(plane: NDArray[np.float32], levels: int, orientations: int) -> Iterator[NDArray[np.float32]]:
+def _reflected_bands(
+    plane: NDArray[np.float32], levels: int, orientations: int, look: Callable[[], None]
+) -> Iterator[NDArray[np.float32]]:
     """Yield the bands of ``steerable.build_reflected``."""
     mirrored = steerable.mirror(plane)
     transform = steerable.Transform.of(mirrored, levels, orientations)
-    spectrum = transform.forward(mirrored)
+    spectrum = transform.forward(mirrored, look)
     for key in transform.keys:
-        yield steerable.quadrant(transform.band(spectrum, key), plane.shape, key.level)
+        yield steerable.quadrant(transform.band(spectrum, key, look), plane.shape, key.level)
 
 
 def band_keys(kind: PyramidKind, levels: int, orientations: int) -> tuple[BandKey, ...]:
@@ -226,7 +225,7 @@ def amplify(
     orientations: int,
     gains: Mapping[BandKey, float],
     channel: Channel = "luma",
-    look: Callable[[], None] = _go_on,
+    look: Callable[[], None] = go_on,
 ) -> FloatImage:
     """Return the image with its subbands multiplied by gains.
 
@@ -243,7 +242,7 @@ def amplify(
     channel
         ``luma`` treats all channels alike; else only the part of the colours along that channel or axis.
     look
-        Called between the bands of a steerable pyramid; may raise to stop.
+        Called between the bands, and between pieces of large ones; may raise to stop.
 
     Returns
     -------
@@ -279,18 +278,18 @@ def _collapse_amplified(
     look: Callable[[], None],
 ) -> NDArray[np.float32]:
     if kind == "laplacian":
-        planes = laplacian.build(plane, levels)
+        planes = laplacian.build(plane, levels, look=look)
         keys = band_keys(kind, levels, orientations)
         bands = [each * np.float32(gains.get(key, 1)) for key, each in zip(keys, planes, strict=True)]
-        return laplacian.collapse(bands)
+        return laplacian.collapse(bands, look=look)
     # The mirrored plane is periodic without a jump; its first quadrant is the plane.
     transform = steerable.Transform.of(mirrored := steerable.mirror(plane), levels, orientations)
-    spectrum = transform.forward(mirrored)
+    spectrum = transform.forward(mirrored, look)
     total = transform.empty_sum()
     for key in transform.keys:
         look()
         if gain := gains.get(key, 1.0):
-            transform.add(total, key, transform.band(spectrum, key) * np.float32(gain))
+            transform.add(total, key, transform.band(spectrum, key, look) * np.float32(gain), look)
     height, width = plane.shape
-    quadrant: NDArray[np.float32] = transform.inverse(total)[:height, :width]
+    quadrant: NDArray[np.float32] = transform.inverse(total, look)[:height, :width]
     return quadrant

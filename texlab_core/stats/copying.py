@@ -90,9 +90,12 @@ def copied_regions_steps(
         found.append(first * width + np.flatnonzero(counts[first * width : last * width] > 1))
         yield 2 / 3
     roots = np.concatenate(found)
+    yield 2 / 3
     roots = roots[np.argsort(-counts[roots], kind="stable")]
+    yield 2 / 3
     rank = np.zeros(height * width, np.int32)
     rank[roots] = np.arange(1, roots.size + 1, dtype=np.int32)
+    yield 2 / 3
     labels = np.empty(height * width, np.int32)
     for done, (first, last) in enumerate(blocks):
         write_labels(parent, rank, labels, first * width, last * width)

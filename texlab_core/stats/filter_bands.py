@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from texlab_core.tasks import go_on
 from texlab_core.transforms import gaussian, oriented, spots_bars, steerable
 from texlab_core.transforms.filters import level_size
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -61,10 +62,16 @@ def most_derived(size: Sequence[int]) -> int:
     return sum(min(level_size(shape, level)) >= FILTER_SIDE for level in range(gaussian.max_levels(shape)))
 
 
-def derived(plane: NDArray[np.float32], levels: int, orientations: int) -> Iterator[NDArray[np.float32]]:
-    """Yield, for every level, the first derivatives and then the second ones, and at last the residual."""
-    *filtered, residual = gaussian.build(plane, levels)
+def derived(
+    plane: NDArray[np.float32], levels: int, orientations: int, look: Callable[[], None] = go_on
+) -> Iterator[NDArray[np.float32]]:
+    """Yield, for every level, the first derivatives and then the second ones, and at last the residual.
+
+    Here and below, ``look`` is called between the steps and may raise to stop.
+    """
+    *filtered, residual = gaussian.build(plane, levels, look=look)
     for each in filtered:
+        look()
         yield from _clockwise(oriented.derivatives(each, 1, orientations, size=FILTER_SIDE), -1)
         yield from _clockwise(oriented.derivatives(each, 2, orientations, size=FILTER_SIDE), 1)
     yield residual
@@ -80,28 +87,35 @@ def _clockwise(found: NDArray[np.float32], opposite: int) -> Iterator[NDArray[np
         yield each if opposite > 0 else -each
 
 
-def spots_and_bars(plane: NDArray[np.float32], levels: int) -> Iterator[NDArray[np.float32]]:
+def spots_and_bars(
+    plane: NDArray[np.float32], levels: int, look: Callable[[], None] = go_on
+) -> Iterator[NDArray[np.float32]]:
     """Yield, for every level, two spots and six bars, and at last the residual."""
-    *filtered, residual = gaussian.build(plane, levels)
+    *filtered, residual = gaussian.build(plane, levels, look=look)
     for each in filtered:
+        look()
         yield from spots_bars.responses(each)
     yield residual
 
 
-def gabor(plane: NDArray[np.float32], *, magnitude: bool) -> Iterator[NDArray[np.float32]]:
+def gabor(
+    plane: NDArray[np.float32], *, magnitude: bool, look: Callable[[], None] = go_on
+) -> Iterator[NDArray[np.float32]]:
     """Yield the channels from the finest octave to the lowest, and at last the residual.
 
     Octave l keeps every 2^l-th sample: at its Nyquist frequency its filters are down to 1 / 512.
     """
-    from texlab_core.transforms.gabor import GaborTransform
+    from texlab_core.transforms.gabor import GaborTransform, Response
 
     height, width = plane.shape
-    transform = GaborTransform(steerable.mirror(plane))
+    mirrored = steerable.mirror(plane)
+    look()
+    transform = GaborTransform(mirrored, look)
     for level in range(GABOR_OCTAVES):
         step = slice(None, None, 1 << level)
         for number in range(GABOR_ORIENTATIONS):
-            response = transform.channel(GABOR_ORIENTATIONS * (GABOR_OCTAVES - 1 - level) + number)
-            values = response.magnitude if magnitude else response.even
-            yield values[:height, :width][step, step].copy()
+            response = transform.channel(GABOR_ORIENTATIONS * (GABOR_OCTAVES - 1 - level) + number, look)
+            kept = Response(response.values[:height, :width][step, step])
+            yield (kept.magnitude if magnitude else kept.even).copy()
     step = slice(None, None, 1 << (GABOR_OCTAVES - 1))
-    yield transform.residual()[:height, :width][step, step].copy()
+    yield transform.residual(look)[:height, :width][step, step].copy()

@@ -118,6 +118,10 @@ def _match_in_pieces(flat: Sample, target: Sample, seed: np.uint64, chunk: int) 
     counts = np.zeros((ranks.PASSES, ranks.DIGITS), np.int64)
     first, second = np.empty(many, np.uint64), np.empty(many, np.uint64)
     for start, stop in pieces:
+        # Memory comes on its first use: a scattering would otherwise wait for all of it in its first piece.
+        first[start:stop] = second[start:stop] = 0
+        yield 0
+    for start, stop in pieces:
         ranks.count(bits, start, stop, counts)
         yield (stop - start) // 6
     ranks.starts(counts)

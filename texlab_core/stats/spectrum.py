@@ -16,9 +16,13 @@ import numpy as np
 import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
+from texlab_core.tasks import finish, go_on, row_blocks
 from texlab_core.threads import workers
+from texlab_core.transforms import fourier
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab_core.steps import FloatImage
 
 Plane: TypeAlias = NDArray[np.float32]
@@ -140,19 +144,26 @@ def gray_plane(image: FloatImage) -> Plane:
     return plane
 
 
-def power_spectrum(image: FloatImage) -> Spectrum:
+def power_spectrum(image: FloatImage, look: Callable[[], None] = go_on) -> Spectrum:
     """Return the power spectrum of the luminance of an image.
 
     Parameters
     ----------
     image
         (H, W, C) float32 in [0, 1]; its mean is removed first.
+    look
+        Called between the parts; may raise to stop.
     """
+    look()
     plane = gray_plane(image)
-    transform = scipy.fft.rfft2(plane - np.float32(plane.mean(dtype=np.float64)), workers=workers())
-    power = np.square(transform.real)
-    power += np.square(transform.imag)
-    power /= np.float32(plane.size)
+    look()
+    transform = finish(fourier.rfft2(plane - np.float32(plane.mean(dtype=np.float64))), look)
+    power = np.empty(transform.shape, np.float32)
+    for rows in row_blocks(power.shape):
+        look()
+        # The transform is scaled by 1 / pixels.
+        power[rows] = np.square(transform[rows].real) + np.square(transform[rows].imag)
+        power[rows] *= np.float32(plane.size)
     power[0, 0] = 0
     return Spectrum(power, plane.shape[1])
 

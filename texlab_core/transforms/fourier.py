@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.tasks import row_blocks
+from texlab_core.tasks import finish, row_blocks
 from texlab_core.threads import workers
 
 if TYPE_CHECKING:
@@ -59,6 +59,39 @@ def irfft2(spectrum: NDArray[Any], size: Sequence[int]) -> Task[NDArray[Any]]:
     return plane
 
 
+def fft2(plane: NDArray[Any]) -> Task[NDArray[Any]]:
+    """Return the whole spectrum (H, W) of a plane, not scaled."""
+    from scipy import fft
+
+    if plane.size <= LARGE:
+        yield plane.size
+        return fft.fft2(plane, workers=_threads(plane.size))
+    spectrum = np.empty(plane.shape, np.result_type(plane.dtype, np.complex64))
+    for rows in row_blocks(plane.shape):
+        spectrum[rows] = fft.fft(plane[rows], axis=1, workers=workers())
+        yield plane[rows].size
+    for columns in row_blocks(plane.shape[::-1]):
+        spectrum[:, columns] = fft.fft(spectrum[:, columns], axis=0, workers=workers())
+        yield spectrum[:, columns].size
+    return spectrum
+
+
+def ifft2(spectrum: NDArray[Any]) -> Task[NDArray[Any]]:
+    """Return the complex plane of a whole spectrum, which is overwritten."""
+    from scipy import fft
+
+    if spectrum.size <= LARGE:
+        yield spectrum.size
+        return fft.ifft2(spectrum, overwrite_x=True, workers=_threads(spectrum.size))
+    for columns in row_blocks(spectrum.shape[::-1]):
+        spectrum[:, columns] = fft.ifft(spectrum[:, columns], axis=0, workers=workers())
+        yield spectrum[:, columns].size
+    for rows in row_blocks(spectrum.shape):
+        spectrum[rows] = fft.ifft(spectrum[rows], axis=1, workers=workers())
+        yield spectrum[rows].size
+    return spectrum
+
+
 def _threads(samples: int) -> int:
     return workers() if samples >= SMALL else 1
 
@@ -78,6 +111,11 @@ def periodic_component(image: NDArray[Any]) -> NDArray[Any]:
 
     Reference: Moisan 2011, "Periodic plus smooth image decomposition", equations 10 and 11.
     """
+    return finish(periodic_component_task(image))
+
+
+def periodic_component_task(image: NDArray[Any]) -> Task[NDArray[Any]]:
+    """Do :func:`periodic_component` in pieces."""
     from scipy import fft
 
     values = image.astype(np.float64)
@@ -92,9 +130,14 @@ def periodic_component(image: NDArray[Any]) -> NDArray[Any]:
     columns = 2 * np.cos(2 * np.pi * np.arange(width // 2 + 1) / width)[None, :]
     laplacian = rows + columns - 4
     laplacian[0, 0] = 1
-    spectrum = fft.rfft2(jumps, workers=workers()) / laplacian
+    yield image.size
+    spectrum = fft.rfft2(jumps, workers=workers())
+    yield image.size
+    spectrum /= laplacian
     spectrum[0, 0] = 0
+    yield image.size
     smooth = fft.irfft2(spectrum, s=values.shape, workers=workers())
+    yield image.size
     # The periodic Laplacian of the smooth part is the jumps: that of the rest sees no border.
     periodic: NDArray[Any] = (values - smooth).astype(image.dtype)
     return periodic

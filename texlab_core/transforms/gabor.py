@@ -25,10 +25,12 @@ from texlab_core.spectral.bank import (
     mirrored,
     power_profile,
 )
+from texlab_core.tasks import finish, go_on, row_blocks
 from texlab_core.threads import workers
+from texlab_core.transforms import fourier
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Callable, Generator
 
 Plane: TypeAlias = NDArray[np.float32]
 
@@ -124,25 +126,28 @@ class GaborTransform:
     ----------
     plane
         (H, W) float32, taken as periodic. Its mean belongs to the residual alone.
+    look
+        Here and in the methods: called between pieces of large transforms; may raise to stop.
     """
 
-    def __init__(self, plane: Plane) -> None:
+    def __init__(self, plane: Plane, look: Callable[[], None] = go_on) -> None:
         self.plane = plane
         self.size = (plane.shape[0], plane.shape[1])
         self.mean = float(plane.mean(dtype=np.float64))
         centred = plane.astype(np.float32) - np.float32(self.mean)
-        self._spectrum: NDArray[Any] = scipy.fft.fft2(centred, workers=workers())
+        look()
+        self._spectrum: NDArray[Any] = finish(fourier.fft2(centred), look)
 
-    def channel(self, channel: int) -> Response:
+    def channel(self, channel: int, look: Callable[[], None] = go_on) -> Response:
         """Return the answer of channel 4 p + q; its even part is what the paper's real filters give."""
         gain_v, gain_u = (each[channel] for each in _profiles(self.size))
-        return self._filtered(gain_v, gain_u)
+        return self._filtered(gain_v, gain_u, look)
 
-    def residual(self) -> Plane:
+    def residual(self, look: Callable[[], None] = go_on) -> Plane:
         """Return the low-pass residual, mean included."""
         gain_v, gain_u = _residual_profiles(self.size)
         # One lobe at zero frequency is the whole filter.
-        return 0.5 * self._filtered(gain_v, gain_u).even + np.float32(self.mean)
+        return 0.5 * self._filtered(gain_v, gain_u, look).even + np.float32(self.mean)
 
     def reconstruction(self) -> Plane:
         """Return the sum of the even channels and the residual: nearly the image."""
@@ -168,11 +173,17 @@ class GaborTransform:
         rms = [math.sqrt(float(np.square(each.even, dtype=np.float64).mean())) for each in self.channels()]
         return 100 * np.array(rms).reshape(-1, ORIENTATIONS) / max(self.mean, 1e-12)
 
-    def _filtered(self, gain_v: NDArray[np.float64], gain_u: NDArray[np.float64]) -> Response:
+    def _filtered(
+        self, gain_v: NDArray[np.float64], gain_u: NDArray[np.float64], look: Callable[[], None]
+    ) -> Response:
+        product = np.empty_like(self._spectrum)
         # Twice one lobe is the analytic signal: its real part has both lobes.
-        product = self._spectrum * (2 * gain_v[:, None]).astype(np.float32)
-        product *= gain_u.astype(np.float32)
-        return Response(scipy.fft.ifft2(product, overwrite_x=True, workers=workers()))
+        down, across = (2 * gain_v[:, None]).astype(np.float32), gain_u.astype(np.float32)
+        for rows in row_blocks(product.shape):
+            look()
+            np.multiply(self._spectrum[rows], down[rows], out=product[rows])
+            product[rows] *= across
+        return Response(finish(fourier.ifft2(product), look))
 
 
 def psnr(first: Plane, second: Plane) -> float:

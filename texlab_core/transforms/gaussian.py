@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 
 import numpy as np
 
+from texlab_core.tasks import go_on
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -113,10 +115,16 @@ def max_levels(shape: Sequence[int]) -> int:
     return (min(shape[0], shape[1]) - 1).bit_length()
 
 
-def build(image: NDArray[FloatT], levels: int, border: Border = "reflect") -> list[NDArray[FloatT]]:
-    """Return the Gaussian pyramid: the image itself and ``levels`` reductions of it, finest first."""
+def build(
+    image: NDArray[FloatT], levels: int, border: Border = "reflect", *, look: Callable[[], None] = go_on
+) -> list[NDArray[FloatT]]:
+    """Return the Gaussian pyramid: the image itself and ``levels`` reductions of it, finest first.
+
+    ``look`` is called between the levels and may raise to stop.
+    """
     pyramid = [image]
     for _ in range(levels):
+        look()
         pyramid.append(reduce(pyramid[-1], border))
     return pyramid
 

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from texlab_core.tasks import go_on
 from texlab_core.transforms.gaussian import Border, Expansion, FloatT, expand, reduce
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -20,6 +21,8 @@ def build(
     levels: int,
     border: Border = "reflect",
     mode: Expansion = "interpolate",
+    *,
+    look: Callable[[], None] = go_on,
 ) -> list[NDArray[FloatT]]:
     """Split an image into bands: L_i = G_i - expand(G_{i+1}) and L_N = G_N.
 
@@ -31,6 +34,8 @@ def build(
         Number N of band-pass levels; 0 gives the image alone.
     border, mode
         See :mod:`texlab_core.transforms.gaussian`.
+    look
+        Called between the levels; may raise to stop.
 
     Returns
     -------
@@ -39,7 +44,9 @@ def build(
     """
     bands = []
     for _ in range(levels):
+        look()
         coarser = reduce(image, border)
+        look()
         bands.append(image - expand(coarser, image.shape, border, mode))
         image = coarser
     bands.append(image)
@@ -50,6 +57,8 @@ def collapse(
     pyramid: Sequence[NDArray[FloatT]],
     border: Border = "reflect",
     mode: Expansion = "interpolate",
+    *,
+    look: Callable[[], None] = go_on,
 ) -> NDArray[FloatT]:
     """Return the image that a Laplacian pyramid was built from, up to rounding.
 
@@ -59,8 +68,11 @@ def collapse(
         As from :func:`build`.
     border, mode
         As they were given to :func:`build`.
+    look
+        Called between the levels; may raise to stop.
     """
     image = pyramid[-1]
     for band in reversed(pyramid[:-1]):
+        look()
         image = band + expand(image, band.shape, border, mode)
     return image

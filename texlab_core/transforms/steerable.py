@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.tasks import finish, row_blocks
+from texlab_core.tasks import finish, go_on, row_blocks
 from texlab_core.transforms import filters, fourier
 from texlab_core.transforms.filters import Size, level_size, spectrum_size
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from texlab_core.tasks import Task
 
@@ -204,17 +204,20 @@ class Transform:
         response: Plane = responses[key.orientation]
         return response
 
-    def forward(self, image: Plane) -> Spectrum:
-        """Return the half spectrum of a plane, scaled so that its first entry is the mean."""
-        return finish(fourier.rfft2(image))
+    def forward(self, image: Plane, look: Callable[[], None] = go_on) -> Spectrum:
+        """Return the half spectrum of a plane, scaled so that its first entry is the mean.
 
-    def inverse(self, total: Spectrum) -> Plane:
+        Here and below, ``look`` is called between pieces and may raise to stop.
+        """
+        return finish(fourier.rfft2(image), look)
+
+    def inverse(self, total: Spectrum, look: Callable[[], None] = go_on) -> Plane:
         """Return the plane of a half spectrum, which is overwritten."""
-        return finish(fourier.irfft2(total, self.size))
+        return finish(fourier.irfft2(total, self.size), look)
 
-    def band(self, spectrum: Spectrum, key: BandKey) -> Plane:
+    def band(self, spectrum: Spectrum, key: BandKey, look: Callable[[], None] = go_on) -> Plane:
         """Return one subband from the plane's spectrum."""
-        return finish(self.band_task(spectrum, key))
+        return finish(self.band_task(spectrum, key), look)
 
     def band_task(self, spectrum: Spectrum, key: BandKey) -> Task[Plane]:
         """Do :meth:`band` in pieces."""
@@ -232,9 +235,10 @@ class Transform:
         """Return a spectrum to which :meth:`add` adds bands."""
         return np.zeros(spectrum_size(self.size), np.result_type(self.dtype, np.complex64))
 
-    def add(self, total: Spectrum, key: BandKey, plane: Plane) -> None:
+    def add(self, total: Spectrum, key: BandKey, plane: Plane, look: Callable[[], None] = go_on) -> None:
         """Filter one subband again and add it to the spectrum of the collapsed plane."""
-        finish(self.add_task(total, key, finish(self.filtered_task(key, plane))))
+        part = finish(self.filtered_task(key, plane), look)
+        finish(self.add_task(total, key, part), look)
 
     def filtered_task(self, key: BandKey, plane: Plane) -> Task[Spectrum]:
         """Return the spectrum of one subband, filtered again, in pieces."""
