@@ -190,6 +190,11 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     boxes = palette(theme)
     boxes.setColor(QPalette.ColorRole.Base, QColor(theme.border if theme.name == "dark" else theme.base))
     application.setPalette(boxes, "QCheckBox")  # type: ignore[arg-type]  # Qt wants text
+    # The same outline is all that tells a field to type in from what is around it.
+    fields = palette(theme)
+    fields.setColor(QPalette.ColorRole.Base, QColor(theme.raised if theme.name == "dark" else theme.base))
+    for kind in ("QLineEdit", "QAbstractSpinBox"):
+        application.setPalette(fields, kind)  # type: ignore[arg-type]
     application.setStyleSheet(stylesheet(theme, application.font().pointSizeF()))
 
 

@@ -101,6 +101,44 @@ def test_strokes_are_undone_cleared_and_inverted(qtbot: Any, filling: tuple[Expl
     assert not canvas.mask.any()
 
 
+def test_undo_takes_back_strokes_on_the_picture_and_changes_elsewhere(
+    qtbot: Any, filling: tuple[Explorer, FillDock]
+) -> None:
+    explorer, dock = filling
+    canvas = dock.canvas
+    explorer.session.set_seed(77)
+    drag(qtbot, canvas.viewport(), [canvas.to_widget(20, column).toPoint() for column in (18, 22, 28)])
+    canvas.setFocus()
+    for key in (Qt.Key.Key_Z, Qt.Key.Key_Z):
+        qtbot.keyClick(canvas, key, Qt.KeyboardModifier.ControlModifier)
+    assert not canvas.mask.any()
+    assert explorer.session.state.seed == 77
+    both = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    qtbot.keyClick(canvas, Qt.Key.Key_Z, both)
+    assert canvas.mask.any()
+    dock.fill_button.setFocus()
+    qtbot.keyClick(dock.fill_button, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert explorer.session.state.seed != 77
+    assert canvas.mask.any()
+    wait_idle(qtbot, explorer)
+
+
+def test_a_new_filled_column_is_in_sight(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
+    explorer, dock = filling
+    for _ in range(6):
+        explorer.session.duplicate_column(ids(explorer)[0])
+    wait_idle(qtbot, explorer)
+    count = len(ids(explorer))
+    canvas = dock.canvas
+    drag(qtbot, canvas.viewport(), [canvas.to_widget(20, column).toPoint() for column in (18, 22, 28)])
+    qtbot.mouseClick(dock.fill_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(ids(explorer)) == count + 1, timeout=10_000)
+    wait_idle(qtbot, explorer)
+    view = explorer.workspace.columns[ids(explorer)[-1]]
+    assert explorer.workspace.horizontalScrollBar().maximum() > 0
+    qtbot.waitUntil(lambda: view.visibleRegion().boundingRect().width() == view.width())
+
+
 def test_the_keyboard_paints(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
     _, dock = filling
     dock.radius.setValue(2)

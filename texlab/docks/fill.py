@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSpinBox
 
 from texlab.dock_frame import FramedDock, shown_image
@@ -70,7 +68,7 @@ class FillDock(FramedDock):
         self.radius.setPrefix("radius ")
         self.radius.valueChanged.connect(self._radius_changed)
         self.add_control(self.radius, "radius", "Radius", "Radius of the brush, in pixels")
-        self.add_button("undo", "Undo stroke", "Take the last stroke back (Ctrl+Z here)", self._undo)
+        self.add_button("undo", "Undo stroke", "Take the last stroke back (Ctrl+Z on the picture)", self._undo)
         self.add_button("clear", "Clear", "Unmark everything", lambda: self._replace(lambda mask: mask & False))
         self.add_button("invert", "Invert", "Mark what is not marked", lambda: self._replace(np.logical_not))
         self.add_button(
@@ -86,13 +84,6 @@ class FillDock(FramedDock):
             canvas.setVisible(key == "mask")
             layout.addWidget(canvas)
             canvas.changed.connect(self._update)
-        for keys, act in (
-            (QKeySequence.StandardKey.Undo, self._undo),
-            (QKeySequence.StandardKey.Redo, self._redo),
-        ):
-            shortcut = QShortcut(QKeySequence(keys), self)
-            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            shortcut.activated.connect(act)
         self._image: FloatImage | None = None
         self._exemplar: ImageInput | None = None
         self._update()
@@ -155,9 +146,6 @@ class FillDock(FramedDock):
 
     def _undo(self) -> None:
         self.canvas.undo()
-
-    def _redo(self) -> None:
-        self.canvas.redo()
 
     def _replace(self, change: Callable[[NDArray[np.bool_]], NDArray[np.bool_]]) -> None:
         self.canvas.set_mask(change(self.canvas.mask))

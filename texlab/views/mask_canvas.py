@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent
+from PySide6.QtGui import QKeyEvent, QKeySequence, QMouseEvent
 
 from texlab.widgets.plots import PicturePane, pg
 
@@ -104,8 +104,19 @@ class MaskCanvas(PicturePane):
                 return True
         return bool(super().eventFilter(watched, event))
 
+    def event(self, event: QEvent) -> bool:
+        """Keep the keys of undo and redo: a stroke is taken back here before anything else is."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride and _stroke_key(event):
+            event.accept()
+            return True
+        return bool(super().event(event))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Move with the arrow keys, paint with the space bar."""
+        """Move with the arrow keys, paint with the space bar, take strokes back with the keys of undo."""
+        back = _stroke_key(event)
+        if back is not None:
+            (self.undo if back == "undo" else self.redo)()
+            return
         steps = {
             Qt.Key.Key_Left: (0, -1), Qt.Key.Key_Right: (0, 1), Qt.Key.Key_Up: (-1, 0), Qt.Key.Key_Down: (1, 0),
         }  # fmt: skip
@@ -157,6 +168,13 @@ class MaskCanvas(PicturePane):
     def _show_mask(self) -> None:
         wash = np.where(self.mask[..., None], _WASH, np.uint8(0)).astype(np.uint8)
         self._wash.setImage(wash, autoLevels=False, levels=None)
+
+
+def _stroke_key(event: QKeyEvent) -> Literal["undo", "redo"] | None:
+    """Return what a key does to the last stroke."""
+    if event.matches(QKeySequence.StandardKey.Undo):
+        return "undo"
+    return "redo" if event.matches(QKeySequence.StandardKey.Redo) else None
 
 
 def paint_line(

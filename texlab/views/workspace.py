@@ -51,6 +51,7 @@ class Workspace(QScrollArea):
         self._theme: Theme | None = None
         self._order: tuple[int, ...] = ()
         self._revealed = 0
+        self._chosen = 0
         # Columns have come or gone, or the window is narrower.
         self.horizontalScrollBar().rangeChanged.connect(lambda *_: self._scroll())
 
@@ -77,6 +78,12 @@ class Workspace(QScrollArea):
             view.show_scene(column)
             view.set_chosen(column.id == scene.selected_id)
             view.pane.set_marks(pinned_pixel(scene, column.id))
+        if scene.selected_id != self._chosen:
+            self._chosen = scene.selected_id
+            chosen = self.columns.get(self._chosen)
+            # What is clicked stays under the pointer.
+            if chosen is not None and not chosen.underMouse():
+                self.reveal(self._chosen)
 
     def _add(self, column_id: int) -> None:
         view = ColumnView(column_id, self._methods, self.link)
