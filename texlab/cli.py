@@ -101,11 +101,19 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(given: Sequence[str]) -> int:
+    given = _or_window(given)
     try:
-        args = build_parser(given).parse_args(given or ["gui"])
+        args = build_parser(given).parse_args(given)
     except SystemExit as end:  # argparse has printed help, version or an error
         return end.code if isinstance(end.code, int) else 0
     return int(args.execute(args))
+
+
+def _or_window(given: Sequence[str]) -> list[str]:
+    """Return the arguments of a command: nothing, a file or a texture alone are for the window."""
+    alone = len(given) == 1 and given[0] not in find_commands()
+    opens = not given or (alone and (given[0].startswith("gallery:") or os.path.isfile(given[0])))
+    return ["gui", *given] if opens else list(given)
 
 
 def main_gui() -> int:

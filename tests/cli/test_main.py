@@ -250,3 +250,19 @@ def test_the_entry_point_of_the_window_takes_a_file(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(sys, "argv", ["texlab-gui", "wall.png"])
     assert cli.main_gui() == 0
     assert seen == [["gui", "wall.png"]]
+
+
+def test_a_file_or_a_texture_alone_opens_the_window(
+    texlab: Texlab, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    from texlab import app
+
+    opened: list[str | None] = []
+    monkeypatch.setattr(app, "run_gui", lambda image: opened.append(image) or 0)
+    photo = tmp_path / "wall.png"
+    photo.write_bytes(b"")
+    assert texlab(str(photo)).code == 0
+    assert texlab("gallery:oriented-zebra").code == 0
+    assert opened == [str(photo), "gallery:oriented-zebra"]
+    assert texlab(str(tmp_path / "gone.png")).code == 2
+    assert len(opened) == 2

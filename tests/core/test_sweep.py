@@ -237,9 +237,9 @@ def test_a_cell_that_waits_for_an_analysis_can_be_stopped():
 @pytest.mark.parametrize(
     ("values", "copied", "candidates", "label"),
     [
-        ({"alpha": 0.15, "beta": 1.0}, 0.9449, 14.0, "alpha 0.15, beta 1, copied 0.94, median 14"),
+        ({"alpha": 0.15, "beta": 1.0}, 0.9449, 14.0, "alpha 0.15, beta 1, copied 94%, median 14"),
         ({"seed": 7}, None, None, "seed 7"),
-        ({"window": 15}, 1.0, 12345.0, "window 15, copied 1.00, median 1.234e+04"),
+        ({"window": 15}, 1.0, 12345.0, "window 15, copied 100%, median 1.234e+04"),
         ({"sibling_rule": "parity", "exact": True}, None, 2.5, "sibling rule parity, exact yes, median 2.5"),
         ({"alpha": 1 / 3}, None, None, "alpha 0.3333"),
     ],

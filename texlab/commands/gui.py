@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from texlab.cli import Parser
 
-HELP = "Open the window (what texlab alone does)."
+HELP = "Open the window (what texlab, or texlab IMAGE, alone does)."
 ORDER = 0
 
 

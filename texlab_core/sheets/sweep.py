@@ -213,10 +213,10 @@ class Cell:
 
     @property
     def evidence(self) -> str:
-        """Copied share and median candidate count, as far as there are any: "copied 0.94, median 14"."""
+        """Copied share and median candidate count, as far as there are any: "copied 94%, median 14"."""
         if self.error:
             return "failed"
-        found = [] if self.copied is None else [f"copied {self.copied:.2f}"]
+        found = [] if self.copied is None else [f"copied {self.copied:.0%}"]
         return ", ".join(found if self.candidates is None else [*found, f"median {self.candidates:.4g}"])
 
     @property
