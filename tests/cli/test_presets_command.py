@@ -85,3 +85,11 @@ def test_files_that_cannot_be_used_are_listed(call):
     saved(call)
     (own_presets().folder / "bad.json").write_text("{")
     assert "not usable: The preset bad.json is not valid JSON" in call().out
+
+
+def test_names_of_unusable_files_cannot_move_the_cursor(call):
+    saved(call)
+    (own_presets().folder / "a\x1b[2J\nb\u202e.json").write_text("{")
+    shown = call().out
+    assert all(each.isprintable() for each in shown.splitlines())
+    assert shown.splitlines()[-1].startswith("not usable: The preset a")

@@ -17,9 +17,11 @@ from texlab_core import registry, synthesize
 from texlab_core.formats.png_text import read_text
 from texlab_core.formats.reading import read_image
 from texlab_core.formats.writing import write_image
-from texlab_core.inputs import Crop
+from texlab_core.images import as_exemplar
+from texlab_core.inputs import ArraysInput, Crop
 from texlab_core.recipes.reading import KEY
-from texlab_core.record import read_recipe
+from texlab_core.record import read_recipe, save_result
+from texlab_core.run import Job, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -272,6 +274,27 @@ def test_redo_takes_every_missing_image_by_its_name(texlab: Texlab) -> None:
         shown = texlab("redo", "a.png", "--out", "b.png", *wrong)
         assert (shown.code, shown.err.count("\n")) == (2, 1)
         assert says in shown.err
+
+
+def test_redo_without_its_state_says_that_nothing_can_replace_it(
+    texlab: Texlab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inputs = (registry.EXEMPLAR, registry.InputSpec("state", "Arrays.", kind="arrays", required=False))
+    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method(inputs=inputs))
+    registry.methods.cache_clear()
+    exemplar = as_exemplar(RAMP, name="ramp.png")
+    for side, missing in ((8, False), (1000, True)):
+        state = ArraysInput({"a": LARGE[:side, :side]}, "a state")
+        made = run(Job(method="toy-noise", inputs={"exemplar": exemplar, "state": state}, size=(9, 9)))
+        save_result(made, "a.png")
+        shown = texlab("redo", "a.png", "--out", "b.png")
+        assert (shown.code, shown.err.count("\n")) == (2 if missing else 0, 1 if missing else 0)
+    assert shown.err.startswith("texlab: a.png does not hold the state a state")
+    assert shown.err.endswith(", and cannot be made again without it.\n")
+    given = texlab("redo", "a.png", "--out", "c.png", "--input", "state=a.png")
+    assert given.code == 2
+    assert given.err.count("\n") == 1
+    assert not Path("c.png").exists()
 
 
 def test_a_map_overwrites_neither_exemplar_nor_result(texlab: Texlab) -> None:

@@ -79,16 +79,20 @@ def test_mistakes_are_refused_before_the_window_is_made(
     assert shown.err.count("\n") == 1
 
 
+def without_display() -> dict[str, str]:
+    """Return the environment of a machine that has no display."""
+    without = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM", "QT_LOGGING_RULES"}
+    return {name: value for name, value in os.environ.items() if name not in without}
+
+
 @pytest.mark.slow
 def test_the_real_window_is_drawn_off_screen(tmp_path: Path) -> None:
-    without = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM", "QT_LOGGING_RULES"}
-    environment = {name: value for name, value in os.environ.items() if name not in without}
     command = [sys.executable, "-m", "texlab", "screenshot", "--out", str(tmp_path / "window.png")]
     done = subprocess.run(
         [*command, "--size", "1100x750", "--gallery", "oriented-zebra"],
         capture_output=True,
         text=True,
-        env=environment,
+        env=without_display(),
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -98,3 +102,32 @@ def test_the_real_window_is_drawn_off_screen(tmp_path: Path) -> None:
     middle = window[200:400, 300:800, :3].astype(np.float64)
     assert middle.std() > 40
     assert np.median(window[..., :3]) < 80
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="limits of Unix")
+def test_a_screenshot_that_finds_no_room_leaves_what_was_there(tmp_path: Path) -> None:
+    out = tmp_path / "out" / "window.png"
+    out.parent.mkdir()
+    out.write_bytes(b"before")
+    limited = (
+        "import resource, signal, sys\nfrom texlab.cli import main\nfrom texlab_core import files\n"
+        "write = files.write_whole\n"
+        "def limited(path, data):\n"
+        "    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, 5_000))\n"
+        "    write(path, data)\n"
+        "files.write_whole = limited\nsys.exit(main(sys.argv[1:]))"
+    )
+    command = [sys.executable, "-c", limited, "screenshot", "--size", "900x700", "--out"]
+    done = subprocess.run(
+        [*command, str(out)],
+        capture_output=True,
+        text=True,
+        env=without_display(),
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"texlab: {out}: cannot be written (File too large).\n"
+    assert os.listdir(out.parent) == ["window.png"]
+    assert out.read_bytes() == b"before"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from texlab_core.images import as_exemplar
 from texlab_core.marginals import analysis
 from texlab_core.methods.heeger_bergen import HeegerBergenParams
 from texlab_core.run import AnalysisCache, Job, Streams, run
+from texlab_core.tasks import crew
 from texlab_core.transforms import fourier
 
 
@@ -275,3 +278,15 @@ def test_every_piece_of_a_large_sort_is_a_step():
         threads=1,
     )
     assert stages.count("noise") >= 3 * 2 * 7
+
+
+def test_the_analysis_begins_in_pieces_of_one_channel():
+    # Sorting the channels and finding the axes of a large photograph took most of a second before the first step.
+    image = np.random.default_rng(3).random((600, 500, 3), np.float32)
+    with crew() as team:
+        work = analysis.analyze(image, "steerable", 1, 1, "wrap", team)
+        pieces = list(itertools.islice(work, 12))
+        work.close()
+    assert pieces[:3] == [300_000] * 3
+    # Then the axes: blocks of at most 2^19 values, or one product of two channels.
+    assert max(pieces[4:]) <= 2**19

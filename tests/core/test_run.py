@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -116,6 +117,25 @@ def test_a_watcher_that_fails_closes_the_generator(log: Log, exemplar: ImageInpu
     with pytest.raises(RuntimeError, match="watcher"):
         run(job(exemplar), watch)
     assert log.closed == 1
+
+
+@pytest.mark.parametrize("error", [StopIteration, GeneratorExit, RuntimeError, KeyboardInterrupt])
+@pytest.mark.parametrize("after", [0, 1, 3])
+def test_what_should_stop_raises_comes_through(
+    log: Log, exemplar: ImageInput, error: type[BaseException], after: int
+) -> None:
+    asked = itertools.count()
+
+    def should_stop() -> bool:
+        if next(asked) >= after:
+            raise error
+        return False
+
+    cache = AnalysisCache()
+    with pytest.raises(error):
+        run(job(exemplar), should_stop=should_stop, cache=cache)
+    # The analysis asks three times and is kept only when it came to its end.
+    assert (cache.get(job(exemplar).analysis_key) is None) == (after < 3)
 
 
 def test_a_callback_that_runs_out_is_no_result(log: Log, exemplar: ImageInput) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 
 import pytest
@@ -113,3 +114,41 @@ def test_files(tmp_path):
 def test_writing_refuses_what_reading_refuses():
     with pytest.raises(ValueError, match="not JSON compliant"):
         strict_json.dumps([float("nan")])
+
+
+@pytest.mark.parametrize("text", ["1" * 900_000, "-" + "9" * 900_000, "0." + "3" * 900_000, "1e" + "9" * 900_000])
+def test_long_numbers_are_refused_before_they_are_converted(text, monkeypatch):
+    # The time of a conversion grows with the square of the digits.
+    converted = []
+    for kind in (int, float):
+        monkeypatch.setattr(
+            strict_json,
+            kind.__name__,
+            lambda digits, kind=kind: (converted.append(digits), kind(digits))[1],
+            raising=False,
+        )
+    with pytest.raises(InputError, match="too large or too long"):
+        strict_json.loads(f"[12, 3.5, {text}]")
+    assert converted == ["12", "3.5"]
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":', '[{"":['])
+def test_deep_texts_never_reach_the_parser(opening, monkeypatch):
+    # It recurses, and its errors depend on the version of Python.
+    def never(*_, **__):
+        raise AssertionError
+
+    monkeypatch.setattr(json, "loads", never)
+    with pytest.raises(InputError, match="is nested more than 32 levels deep"):
+        strict_json.loads(opening * 100_000)
+
+
+def test_quotes_and_backslashes_are_walked_over_once(monkeypatch):
+    # However it is closed or escaped, no character is looked at by two tokens.
+    tokens = strict_json._TOKENS
+    for text in ('"' * 100_001, '"\\' * 100_000, '"\\"' * 100_000, '["' + "\\" * 200_001, "]" * 100_000):
+        found = [token.span() for token in tokens.finditer(text)]
+        assert all(before[1] <= after[0] for before, after in itertools.pairwise(found))
+        assert len(found) <= len(text)
+        with pytest.raises(InputError, match="is not valid JSON"):
+            strict_json.loads(text)
