@@ -161,8 +161,13 @@ class MainWindow(QMainWindow):
 
     def _fill_docks_menu(self) -> None:
         self.docks_menu.clear()
-        for dock in self.docks.values():
+        for name, dock in self.docks.items():
             self.docks_menu.addAction(dock.toggleViewAction())
+            # For the palette: the menu shows and hides, this one goes there.
+            action = self.actions_by_name[f"panel-{name}"] = QAction(f"Panel {dock.windowTitle()}", self)
+            action.setObjectName(f"action-panel-{name}")
+            action.setStatusTip(dock.toolTip())
+            action.triggered.connect(partial(self._go_to_panel, name))
 
     def _make_toolbar(self) -> None:
         bar = QToolBar("Tools")
@@ -325,6 +330,9 @@ class MainWindow(QMainWindow):
             dock.show()
             dock.raise_()
             dock.widget().setFocus()
+
+    def _go_to_panel(self, name: str, _: bool = False) -> None:
+        self.raise_dock(name)
 
     def _set_text_size(self, layout: str) -> None:
         application = QApplication.instance()

@@ -21,6 +21,7 @@ from texlab.jobs import Worker
 from texlab.session import Sample, Session
 from texlab.storage.kept_exemplar import Kept, keep, load
 from texlab.storage.settings import Settings
+from texlab.views.palette import CommandPalette
 from texlab.views.status_line import LINES, StatusLine
 from texlab.widgets.plots import Plot
 from texlab_core.images import as_exemplar
@@ -501,3 +502,23 @@ def test_closing_while_columns_run_ends_their_threads(
     explorer.window.close()
     QApplication.processEvents()
     assert not [each for each in threading.enumerate() if each.name.startswith("texlab-")]
+
+
+def test_the_palette_goes_to_panels_and_says_when_there_is_no_such_command(qtbot: Any, explorer: Explorer) -> None:
+    window = explorer.window
+    host = next(host for host in explorer.hosts if host.dock.name == "histograms")
+    assert not host.seen
+    for typed in ("zzz", "panel histo"):
+        qtbot.keyClick(window, Qt.Key.Key_K, CONTROL)
+        palette = next(each for each in window.findChildren(CommandPalette) if each.isVisible())
+        qtbot.keyClicks(palette.field, typed)
+        if typed == "zzz":
+            assert "zzz" in palette.list.item(0).text()
+            qtbot.keyClick(palette.field, Qt.Key.Key_Return)
+            assert palette.isVisible()
+            qtbot.keyClick(palette.field, Qt.Key.Key_Escape)
+        else:
+            assert palette.list.count() == 1
+            qtbot.keyClick(palette.field, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: host.seen)
+    wait_idle(qtbot, explorer)

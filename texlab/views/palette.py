@@ -65,9 +65,16 @@ class CommandPalette(QDialog):
                 item.setToolTip(action.statusTip())
                 item.setData(Qt.ItemDataRole.UserRole, action)
                 self.list.addItem(item)
-        self.list.setCurrentRow(0)
+        if self.list.count():
+            self.list.setCurrentRow(0)
+        else:
+            nothing = QListWidgetItem(f"No command has \u201c{text.strip()}\u201d in its name or explanation.")
+            nothing.setFlags(Qt.ItemFlag.NoItemFlags)
+            self.list.addItem(nothing)
 
     def _run(self, item: QListWidgetItem) -> None:
-        action: QAction = item.data(Qt.ItemDataRole.UserRole)
+        action: QAction | None = item.data(Qt.ItemDataRole.UserRole)
+        if action is None:
+            return
         self.close()
         action.trigger()
