@@ -72,10 +72,11 @@ def test_all_tabs_are_explained():
     assert not missing
 
 
-def test_code_is_not_cut_at_any_size_of_the_text(window, qtbot):
+@pytest.mark.parametrize("larger", [1, 1.35])
+def test_figures_and_code_are_not_cut_at_any_size_of_the_text(window, qtbot, larger):
     window.hide()
     font = window.font()
-    font.setPointSizeF(1.35 * font.pointSizeF())
+    font.setPointSizeF(larger * font.pointSizeF())
     window.setFont(font)
     window.open_page("de-bonet")
     qtbot.waitUntil(lambda: window.list.count() > 0)

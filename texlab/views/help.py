@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 FIGURE_WIDTH = 720
 LETTERS = 140
+SMALLEST = QSize(1000, 720)
 MARGIN = 16
 
 
@@ -131,11 +132,12 @@ class HelpWindow(QDialog):
             self.browser.show_page("index")
 
     def _make_room(self) -> None:
-        """Be wide enough for the longest line of code, at any size of the text."""
+        """Be wide enough for the figures, and for the longest line of code at any size of the text."""
         letter = self.fontMetrics().averageCharWidth()
         screen = self.screen().availableSize()
         self.list.setFixedWidth(28 * letter)
-        wanted = self.size().expandedTo(QSize(LETTERS * letter, 3 * LETTERS * letter // 4))
+        text = QSize(LETTERS * letter, 3 * LETTERS * letter // 4)
+        wanted = self.size().expandedTo(SMALLEST).expandedTo(text)
         self.resize(wanted.boundedTo(screen))
 
     def _mark(self, name: str) -> None:
