@@ -38,7 +38,7 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
     Raises
     ------
     InputError
-        When one cannot be written, or is there and write-protected; then all stay as they were.
+        When one cannot be written, or is there and write-protected or no file; then all stay as they were.
     """
     made: list[tuple[Path, Path]] = []
     name = ""
@@ -65,6 +65,9 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
 def _write(temporary: Path, target: Path, data: bytes) -> None:
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, "it is a folder")
+    # The rename would put a file in the place of a device or a pipe.
+    if target.exists() and not target.is_file():
+        raise OSError(errno.EINVAL, "it is no regular file")
     # The rename itself would not ask.
     if target.exists() and not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, "it is write-protected")

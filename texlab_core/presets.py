@@ -208,7 +208,7 @@ def read_preset(source: Path | str | bytes, *, what: str | None = None) -> Prese
         With one sentence when it cannot be read, is malformed, newer or hostile.
     """
     if isinstance(source, Path):
-        name = f"the preset {source.name}" if what is None else what
+        name = f"the preset {source.name or source}" if what is None else what
         return preset_from_json(strict_json.load(source, what=name, error=PresetError), what=name)
     name = "the preset" if what is None else what
     return preset_from_json(strict_json.loads(source, what=name, error=PresetError), what=name)

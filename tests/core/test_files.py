@@ -74,6 +74,17 @@ def test_what_is_write_protected_stays(tmp_path, monkeypatch):
     assert path.read_bytes() == b"old"
 
 
+@pytest.mark.skipif(os.name == "nt", reason="pipes of Unix")
+def test_a_pipe_is_not_replaced_by_a_file(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to("pipe")
+    for name in ("pipe", "link"):
+        with pytest.raises(InputError, match=r"cannot be written \(it is no regular file\)\.$"):
+            write_whole(tmp_path / name, b"new")
+    assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
+    assert {each.name for each in tmp_path.iterdir()} == {"pipe", "link"}
+
+
 def test_a_jpeg_and_its_recipe_are_written_together(tmp_path, monkeypatch):
     made = result()
     save_result(made, tmp_path / "a.jpg")

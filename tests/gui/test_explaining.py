@@ -251,7 +251,7 @@ def test_nobody_waits_for_a_picture_to_be_taken_apart():
 
     heeger_bergen.take_apart(result, total(0))
     many = len(asked)
-    # Apart from the picture as a whole, every subband is looked for twice: when it is found and when it is painted.
+    # Every subband is asked for at least twice: when it is found, and when it is painted.
     assert many > 2 * 10
     for count in (1, many // 2, many):
         with pytest.raises(Cancelled):

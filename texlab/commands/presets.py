@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -122,13 +123,32 @@ def _export(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
 
 
 def _rename(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
+    _refuse_bundled(args, store)
     preset = store.rename(args.preset, args.new_name, args.method)
     return preset.to_json(), f"Renamed to {preset.method}/{preset.name}."
 
 
 def _delete(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
+    _refuse_bundled(args, store)
     preset = store.delete(args.preset, args.method)
     return preset.to_json(), f"Deleted {preset.method}/{preset.name}."
+
+
+def _refuse_bundled(args: argparse.Namespace, store: PresetStore) -> None:
+    """Raise ``InputError`` when only a bundled preset has the name."""
+    from texlab_core.errors import InputError
+    from texlab_core.preset_store import bundled_presets
+    from texlab_core.presets import PresetError, pick
+
+    name = args.preset.rpartition("/")[2].casefold()
+    if any(each.name.casefold() == name for each in store.presets(args.method)):
+        return
+    with contextlib.suppress(PresetError):
+        found = pick(bundled_presets(args.method), args.preset, args.method)
+        raise InputError(
+            f"The preset {found.method}/{found.name} comes with TexLab and stays as it is; only your own can be "
+            "renamed or deleted."
+        )
 
 
 def _first_line(preset: Preset) -> str:
