@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import signal
 import sys
 from typing import TYPE_CHECKING, cast
@@ -63,7 +64,10 @@ def run_gui(image: str | None = None) -> int:
     window.show()
 
     def fill() -> None:
-        complete(window, settings, themes).start(image)
+        explorer = complete(window, settings, themes)
+        # What is there by now stays: collections of garbage, while code is loaded, take less of the window's time.
+        gc.freeze()
+        explorer.start(image)
 
     # The shell is painted before the rest is imported.
     QTimer.singleShot(0, lambda: QTimer.singleShot(0, fill))

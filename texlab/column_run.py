@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from texlab_core.run import AnalysisCache
     from texlab_core.steps import FloatImage, Result, Step
+    from texlab_core.warming import Need, Warmth
 
 MAX_FRAME_BYTES = 96 * 2**20
 
@@ -50,6 +51,13 @@ class Progress:
     elapsed_s: float
 
 
+@dataclass(frozen=True)
+class Waits:
+    """What a run waits for before it starts."""
+
+    reason: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Finished:
     """The end of a run."""
@@ -67,6 +75,21 @@ class Drafted:
 
     picture: Picture
     image: FloatImage
+
+
+@dataclass(frozen=True)
+class Loading:
+    """A request for a worker: waits until a run with this need does not have to load anything itself."""
+
+    warmth: Warmth
+    need: Need
+
+    def __call__(self, task: TaskLike) -> None:
+        """Wait, and say so."""
+        if not self.warmth.is_warm(self.need):
+            task.progress(Waits("loading"))
+            self.warmth.wait(self.need, task.should_stop)
+            task.progress(Waits())
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from texlab.column_run import ColumnRun, Drafted, DraftRun, Finished, Progress, with_exemplar
+from texlab.column_run import ColumnRun, Drafted, DraftRun, Finished, Loading, Progress, Waits, with_exemplar
 from texlab.jobs import Request, Slots, Worker
 from texlab.pictures import to_picture
 from texlab.resolve import difference, draft_size
@@ -21,6 +21,7 @@ from texlab.scene import ColumnScene, Mark, Picture, Probe, Scene
 from texlab_core.inputs import ArraysInput
 from texlab_core.registry import find_method
 from texlab_core.run import AnalysisCache, Job
+from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -78,6 +79,7 @@ class Controller(QObject):
         self._themes = themes
         self._slots = Slots(max(1, os.cpu_count() or 1))
         self._cache = AnalysisCache()
+        self._warmth = Warmth()
         self._runtimes: dict[int, _Runtime] = {}
         self._prepared: Prepared | None = None
         self._dragging = False
@@ -89,10 +91,13 @@ class Controller(QObject):
         self._exemplar_worker = Worker("exemplar", parent=self)
         self._exemplar_worker.finished.connect(self._exemplar_prepared)
         self._exemplar_worker.failed.connect(self._exemplar_failed)
+        self._warming = Worker("warming", parent=self)
+        self._warming.submit(lambda task: self._warmth.serve())
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
         self._refresh.timeout.connect(self._announce)
+        self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
         themes.changed.connect(lambda _: self._refresh.start())
@@ -125,6 +130,11 @@ class Controller(QObject):
     def slots(self) -> Slots:
         """The places that everything that computes shares: as many as there are cores."""
         return self._slots
+
+    @property
+    def warmth(self) -> Warmth:
+        """What is loaded, for everybody who runs methods."""
+        return self._warmth
 
     @property
     def busy(self) -> bool:
@@ -265,11 +275,12 @@ class Controller(QObject):
 
     def _workers(self) -> list[Worker]:
         columns = [runtime.worker for runtime in self._runtimes.values()]
-        return [*columns, *self._leaving, self._exemplar_worker, *self._once_workers]
+        return [*columns, *self._leaving, self._exemplar_worker, self._warming, *self._once_workers]
 
     def leave(self) -> None:
         """Ask every thread to end, without waiting."""
         self._refresh.stop()
+        self._warmth.close()
         for worker in self._workers():
             worker.leave()
 
@@ -290,6 +301,8 @@ class Controller(QObject):
             self._let_go(self._runtimes.pop(column_id).worker)
         for column_id in changes.added:
             self._add_runtime(column_id)
+        if changes.sample or changes.added:
+            self._wish(after)
         if changes.sample:
             self._prepare(after.sample)
         elif self._prepared is not None:
@@ -398,11 +411,12 @@ class Controller(QObject):
                 "elapsed_s": 0.0,
             }
         self._set(column_id, **changes)
+        loading = Loading(self._warmth, Need(method.id, exemplar.channels))
         if own_draft:
-            runtime.worker.submit(DraftRun(make_job), patient=patient)
+            runtime.worker.submit(DraftRun(make_job), patient=patient, first=loading)
         else:
             runtime.run = ColumnRun(make_job, self._cache, draft=draft)
-            runtime.worker.submit(runtime.run, patient=patient)
+            runtime.worker.submit(runtime.run, patient=patient, first=loading)
 
     # The workers report.
 
@@ -417,9 +431,12 @@ class Controller(QObject):
         runtime = self._runtimes[column_id]
         runtime.started_at = time.perf_counter()
         if not runtime.live:
-            self._set(column_id, status="running")
+            self._set(column_id, status="running", message="")
 
-    def _run_progressed(self, column_id: int, report: Progress) -> None:
+    def _run_progressed(self, column_id: int, report: Progress | Waits) -> None:
+        if isinstance(report, Waits):
+            self._set(column_id, message=report.reason)
+            return
         changes: dict[str, Any] = {
             "fraction": report.fraction,
             "message": report.message,
@@ -467,6 +484,17 @@ class Controller(QObject):
     def _run_cancelled(self, column_id: int) -> None:
         self._runtimes[column_id].live = False
         self._set(column_id, status="cancelled", message="", draft=False)
+
+    def _wish(self, state: State) -> None:
+        """Begin to load what the columns are about to need, in their order; most exemplars are coloured."""
+        channels = state.sample.source.channels if state.sample is not None else 3
+        self._warmth.wish(Need(column.method, channels) for column in state.columns)
+
+    def _load_the_rest(self) -> None:
+        """Load what no column needs, once all of them have what they need."""
+        if self._prepared is not None:
+            self.all_idle.disconnect(self._load_the_rest)
+            self._warmth.wish(every_need())
 
     def _announce(self) -> None:
         self.scene_changed.emit(self.scene())

@@ -38,7 +38,6 @@ from texlab_core.params import describe
 from texlab_core.registry import methods
 from texlab_core.run import MAX_SEED, versions
 from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
-from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +85,6 @@ class Explorer(QObject):
         self.docks: list[Dock] = [make() for make in dock_classes()]
         self.hosts = [DockHost(dock, self._dock_slots, self) for dock in self.docks]
         self._thumbnails = Worker("thumbnails", parent=self)
-        self._warming = Worker("warming", parent=self)
         self._turned = ""
         self._turning = QTimer(self)
         self._turning.setSingleShot(True)
@@ -119,13 +117,6 @@ class Explorer(QObject):
         self._select(made[place].id)
         self.session.reset_history()
         self._open_first(source, saved)
-        # What the first columns do not need is loaded once they have what they need.
-        self.controller.all_idle.connect(self._warm_up)
-
-    def _warm_up(self) -> None:
-        if self.session.state.sample is not None:
-            self.controller.all_idle.disconnect(self._warm_up)
-            self._warming.submit(lambda task: warm_up(task.should_stop))
 
     def _open_first(self, source: str | None, saved: Any) -> None:
         choices = [*last_exemplar(saved), Choice(FIRST_TEXTURE, FIRST_CROP, 1.0)]
@@ -155,7 +146,6 @@ class Explorer(QObject):
         for host in self.hosts:
             host.close()
         self._thumbnails.close()
-        self._warming.close()
         self.overlays.close()
         self.controller.close()
         self.crash.remove()

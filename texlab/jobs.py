@@ -17,11 +17,14 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtCore import QObject, Signal, Slot
 
 from texlab_core.errors import Cancelled, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 log = logging.getLogger(__name__)
 
@@ -36,6 +39,16 @@ class Slots:
         self._free = count
         self._waiting: deque[object] = deque()
         self._changed = threading.Condition()
+
+    @contextlib.contextmanager
+    def place(self, should_stop: Callable[[], bool]) -> Iterator[None]:
+        """Hold a place within the block; raises ``Cancelled`` when ``should_stop`` says so before there is one."""
+        if not self.acquire(should_stop):
+            raise Cancelled
+        try:
+            yield
+        finally:
+            self.release()
 
     def acquire(self, should_stop: Callable[[], bool]) -> bool:
         """Wait for a place; False when ``should_stop`` says so first."""
@@ -97,6 +110,12 @@ class Task:
 Request = Callable[[Task], Any]
 
 
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    request: Request
+    first: Request | None
+
+
 class Worker(QObject):
     """One thread with a one-slot mailbox. All signals arrive in the thread that made the worker."""
 
@@ -113,7 +132,7 @@ class Worker(QObject):
         self.setObjectName(f"worker-{name}")
         self._slots = slots
         self._mail = threading.Condition()
-        self._request: Request | None = None
+        self._request: _Asked | None = None
         self._newest = 0
         # Requests from before this one are stale: whatever they report is dropped.
         self._oldest = 0
@@ -150,9 +169,10 @@ class Worker(QObject):
         with self._mail:
             return self._runs or self._request is not None
 
-    def submit(self, request: Request, *, patient: bool = False) -> int:
+    def submit(self, request: Request, *, patient: bool = False, first: Request | None = None) -> int:
         """Run ``request`` instead of whatever waits or runs; returns its generation number.
 
+        ``first`` waits for what the request needs: it is called before a place is taken and ``started`` is told.
         A patient request lets the running one finish: what is asked for faster than it can be answered would
         otherwise never be seen.
         """
@@ -160,7 +180,7 @@ class Worker(QObject):
             self._newest += 1
             if not patient:
                 self._oldest = self._newest
-            self._request = request
+            self._request = _Asked(request, first)
             self._owes = True
             self._mail.notify()
         if self._slots is not None:
@@ -212,23 +232,25 @@ class Worker(QObject):
                     self._mail.wait()
                 if self._closing:
                     return
-                request, self._request = self._request, None
+                asked, self._request = self._request, None
                 generation = self._newest
                 self._runs = True
-            assert request is not None
-            self._run_one(request, Task(self, generation))
-            del request
+            assert asked is not None
+            self._run_one(asked, Task(self, generation))
+            del asked
             with self._mail:
                 self._runs = False
                 self._ends += 1
             self._tell(_Event(generation, "idle"))
 
-    def _run_one(self, request: Request, task: Task) -> None:
-        if self._slots is not None and not self._slots.acquire(task.should_stop):
-            return
+    def _run_one(self, asked: _Asked, task: Task) -> None:
+        place = self._slots.place(task.should_stop) if self._slots is not None else contextlib.nullcontext()
         try:
-            self._tell(_Event(task.generation, "started"))
-            value = request(task)
+            if asked.first is not None:
+                asked.first(task)
+            with place:
+                self._tell(_Event(task.generation, "started"))
+                value = asked.request(task)
         except Cancelled:
             return
         except (InputError, OSError) as error:
@@ -241,9 +263,6 @@ class Worker(QObject):
             self._tell(_Event(task.generation, "failed", text))
         else:
             self._tell(_Event(task.generation, "finished", value))
-        finally:
-            if self._slots is not None:
-                self._slots.release()
 
     def _post_progress(self, generation: int, value: object) -> None:
         with self._mail:

@@ -63,6 +63,8 @@ class Method:
     draft
         ``draft(inputs, params, size, seed)`` returns within about 100 ms a picture, possibly smaller than
         ``size``, that shows what the parameters do; no result, and none to keep. None where smaller jobs serve.
+    rehearsals
+        Parameters with which a tiny run needs compiled code that a run with the defaults does not.
     order
         Place in lists and in the first columns of the window.
     random
@@ -80,6 +82,7 @@ class Method:
     inputs: tuple[InputSpec, ...] = (EXEMPLAR,)
     check: Callable[..., None] | None = None
     draft: Callable[..., FloatImage] | None = None
+    rehearsals: tuple[Params, ...] = ()
     order: int = 100
     random: bool = True
 

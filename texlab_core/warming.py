@@ -1,43 +1,163 @@
-"""Loading what is loaded late (compiled kernels, transforms) before anybody waits for it."""
+"""Loading what is loaded late (compiled kernels, transforms) before anybody waits for it.
+
+The first run of a method in a process imports, and loads or even compiles, what it needs in one piece that nobody
+can stop: half a second, or many when nothing has been compiled on this machine yet. So one thread does that for
+all others with :meth:`Warmth.serve`, and whoever is about to run a method waits for it with :meth:`Warmth.wait`,
+which can be stopped at any moment.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import logging
+import threading
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images import as_exemplar
-from texlab_core.registry import methods
+from texlab_core.registry import find_method, methods
 from texlab_core.run import Job, Streams, run
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-SIDE = 48
+log = logging.getLogger(__name__)
+
+EXEMPLAR = (48, 48)
+# Another size than the exemplar's, short and long: some methods take a short cut where sizes agree or are small.
+OUTPUT = (32, 72)
+# Whoever waits asks this often whether to go on.
+PATIENCE_S = 0.01
 
 
-def warm_up(should_stop: Callable[[], bool] | None = None) -> tuple[str, ...]:
-    """Run every method once on a tiny gray and a tiny coloured exemplar, and forget the results.
+class Need(NamedTuple):
+    """What a run needs in memory: kernels are compiled by the types of their arguments."""
 
-    Afterwards no run waits for a kernel to be compiled or loaded. It takes a second or two, or half a minute
-    when nothing has been compiled on this machine yet.
+    method: str
+    channels: int
 
-    Returns
-    -------
-    tuple of str
-        The methods that were run; not all of them when ``should_stop`` said so.
+
+def every_need() -> tuple[Need, ...]:
+    """Return what the registered methods need for gray and for coloured exemplars."""
+    return tuple(Need(name, channels) for name in methods() for channels in (1, 3))
+
+
+def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
+    """Run a method once on a tiny exemplar, and once more with each of its rehearsals; forget the results.
+
+    Raises
+    ------
+    Cancelled
+        When ``should_stop`` said so, between two steps of a run.
     """
-    noise = Streams(0)("warm up").random((SIDE, SIDE, 3), np.float32)
-    done: list[str] = []
-    for name in methods():
-        for pixels in (noise[..., :1], noise):
-            try:
-                run(Job(method=name, inputs={"exemplar": as_exemplar(pixels)}), should_stop=should_stop, threads=1)
-            except Cancelled:
-                return tuple(done)
-            except InputError:
-                # A method that cannot use an exemplar of this size loads its kernels when it is used.
-                continue
-        done.append(name)
+    method = find_method(need.method)
+    exemplar = as_exemplar(Streams(0)("warm up").random((*EXEMPLAR, need.channels), np.float32))
+    for params in (method.params(), *method.rehearsals):
+        job = Job(method=method.id, inputs={"exemplar": exemplar}, params=params, size=OUTPUT)
+        run(job, should_stop=should_stop, threads=1)
+
+
+def warm_up(should_stop: Callable[[], bool] | None = None) -> tuple[Need, ...]:
+    """Load for every method in gray and in colour; return what was loaded until ``should_stop`` said so."""
+    done: list[Need] = []
+    for need in every_need():
+        try:
+            load(need, should_stop)
+        except Cancelled:
+            break
+        except InputError:
+            # A method that cannot use such an exemplar loads its kernels when it is used.
+            continue
+        done.append(need)
     return tuple(done)
+
+
+class Warmth:
+    """What is in memory, what is waited for, and the order in which the rest is loaded.
+
+    Parameters
+    ----------
+    load
+        ``load(need, should_stop)`` does the loading.
+    """
+
+    def __init__(self, load: Callable[[Need, Callable[[], bool]], None] = load) -> None:
+        self._load = load
+        self._warm: set[Need] = set()
+        # One entry for everybody who waits, the longest waiting first.
+        self._waited: list[Need] = []
+        self._wished: tuple[Need, ...] = ()
+        self._closed = False
+        self._changed = threading.Condition()
+
+    def is_warm(self, need: Need) -> bool:
+        """Whether a run with this need starts without waiting."""
+        with self._changed:
+            return self._closed or need in self._warm
+
+    def wait(self, need: Need, should_stop: Callable[[], bool]) -> None:
+        """Return when a need is in memory, or will not be: loading failed, or nobody loads any more.
+
+        Raises
+        ------
+        Cancelled
+            When ``should_stop`` said so.
+        """
+        with self._changed:
+            self._waited.append(need)
+            self._changed.notify_all()
+            try:
+                while not (self._closed or need in self._warm):
+                    if should_stop():
+                        raise Cancelled
+                    self._changed.wait(PATIENCE_S)
+            finally:
+                self._waited.remove(need)
+
+    def wish(self, needs: Iterable[Need]) -> None:
+        """Load these while nobody waits for others, before what was wished for earlier."""
+        with self._changed:
+            self._wished = tuple(dict.fromkeys((*needs, *self._wished)))
+            self._changed.notify_all()
+
+    def serve(self) -> None:
+        """Load in this thread until :meth:`close`: what is waited for first, then what is wished for."""
+        try:
+            while (need := self._await_need()) is not None:
+                self._serve_one(need)
+        finally:
+            # Whoever still waits goes on without.
+            self.close()
+
+    def close(self) -> None:
+        """Stop loading (between two steps of it) and let everybody go."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    def _serve_one(self, need: Need) -> None:
+        try:
+            # Nobody waits any more, or somebody waits for another one: what is compiled by then stays.
+            self._load(need, lambda: self._next() != need)
+        except Cancelled:
+            return
+        except InputError as error:
+            log.info("%s is loaded when it is first run: %s", need.method, error)
+        except Exception:
+            log.exception("Loading %s failed; its first run tries again.", need.method)
+        with self._changed:
+            self._warm.add(need)
+            self._changed.notify_all()
+
+    def _await_need(self) -> Need | None:
+        with self._changed:
+            while (need := self._next()) is None and not self._closed:
+                self._changed.wait()
+            return need
+
+    def _next(self) -> Need | None:
+        with self._changed:
+            if self._closed:
+                return None
+            return next((need for need in (*self._waited, *self._wished) if need not in self._warm), None)

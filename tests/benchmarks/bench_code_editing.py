@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication
 
 from tests.benchmarks.bench_window import window
 from tests.benchmarks.clock import fourier_pair
+from texlab_core.warming import every_need
 
 if TYPE_CHECKING:
     from texlab.docks.code import CodeDock
@@ -27,7 +28,8 @@ SECONDS = 3.0
 )
 def test_dragging_an_energy(qtbot: Any, tmp_path: Any, texture: str, size: int) -> None:
     with window(qtbot, tmp_path, [("msg", {})], size, f"gallery:{texture}") as explorer:
-        qtbot.waitUntil(lambda: explorer.idle and not explorer._warming.busy, timeout=60_000)
+        warm = explorer.controller.warmth.is_warm
+        qtbot.waitUntil(lambda: explorer.idle and all(map(warm, every_need())), timeout=60_000)
         panel = explorer.window.docks["code"]
         panel.raise_()
         dock: CodeDock = panel.widget()

@@ -2,22 +2,242 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from tests.stub_method import stub  # noqa: F401
 from texlab_core import warming
+from texlab_core.errors import Cancelled, InputError
 from texlab_core.registry import methods
 from texlab_core.run import run
+from texlab_core.warming import Need, Warmth, every_need, load, warm_up
+
+PATIENCE_S = 60.0
+A, B, C = Need("a", 3), Need("b", 3), Need("c", 1)
+
+
+def never() -> bool:
+    return False
 
 
 def test_every_method_is_run_in_gray_and_in_colour(monkeypatch):
     seen = []
 
     def watched(job, **more):
-        seen.append((job.method, job.inputs["exemplar"].channels))
+        seen.append((job.method, job.inputs["exemplar"].channels, job.params))
         return run(job, **more)
 
     monkeypatch.setattr(warming, "run", watched)
-    assert warming.warm_up() == tuple(methods())
-    assert seen == [(name, channels) for name in methods() for channels in (1, 3)]
+    assert warm_up() == every_need()
+    assert seen == [
+        (name, channels, params)
+        for name, method in methods().items()
+        for channels in (1, 3)
+        for params in (method.params(), *method.rehearsals)
+    ]
 
 
 def test_it_stops_at_once():
-    assert warming.warm_up(lambda: True) == ()
+    assert warm_up(lambda: True) == ()
+
+
+# Every choice and the ends of every range, in a process whose kernels are those that loading has loaded.
+NOTHING_ELSE = """
+import gc, numpy as np
+from numba.core.dispatcher import Dispatcher
+from texlab_core.errors import InputError
+from texlab_core.images import as_exemplar
+from texlab_core.params import describe
+from texlab_core.registry import methods
+from texlab_core.run import Job, run
+from texlab_core.warming import warm_up
+
+def loaded():
+    kernels = [each for each in gc.get_objects() if isinstance(each, Dispatcher)]
+    return {(each.__module__, each.__qualname__, str(types)) for each in kernels for types in each.overloads}
+
+warm_up()
+before = loaded()
+assert before
+pixels = np.random.default_rng(0).random((70, 90, 3), np.float32)
+for method in methods().values():
+    variants = [method.params()]
+    for field in describe(method.params):
+        ends = () if field.name == "iterations" else (field.knob.low, field.knob.high)
+        values = field.choices or ((False, True) if field.kind == "bool" else ends)
+        for value in values:
+            try:
+                variants.append(method.params().replace(**{field.name: value}))
+            except (InputError, TypeError):
+                continue
+    for exemplar in (as_exemplar(pixels), as_exemplar(pixels[..., :1])):
+        for params in variants:
+            for size in ((70, 90), (80, 64)):
+                try:
+                    run(Job(method=method.id, inputs={"exemplar": exemplar}, params=params, size=size), threads=1)
+                except InputError:
+                    continue
+        if method.draft is not None:
+            method.draft({"exemplar": exemplar}, method.params(), (80, 64), 1)
+    print(method.id, sorted(loaded() - before))
+    assert loaded() <= before, method.id
+"""
+
+
+@pytest.mark.slow
+def test_no_run_needs_another_kernel():
+    done = subprocess.run([sys.executable, "-c", NOTHING_ELSE], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+# The order of loading, and who waits.
+
+
+class Loader:
+    """Loads what it is allowed to, and keeps the order; a need that nobody allows takes for ever."""
+
+    def __init__(self) -> None:
+        self.started: list[Need] = []
+        self.abandoned: list[Need] = []
+        self.done: list[Need] = []
+        self.allowed: dict[Need, threading.Event] = {need: threading.Event() for need in (A, B, C)}
+        self.begun: dict[Need, threading.Event] = {need: threading.Event() for need in (A, B, C)}
+
+    def __call__(self, need, should_stop):
+        self.started.append(need)
+        self.begun[need].set()
+        while not self.allowed[need].wait(0.001):
+            if should_stop():
+                self.abandoned.append(need)
+                raise Cancelled
+        self.done.append(need)
+
+
+@pytest.fixture
+def loader():
+    return Loader()
+
+
+@pytest.fixture
+def warmth(loader):
+    """What is loaded by another thread."""
+    warmth = Warmth(loader)
+    thread = threading.Thread(target=warmth.serve)
+    thread.start()
+    yield warmth
+    warmth.close()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+
+
+def test_whoever_waits_goes_on_when_it_is_loaded(warmth, loader):
+    with ThreadPoolExecutor() as threads:
+        waiting = threads.submit(warmth.wait, A, never)
+        assert loader.begun[A].wait(PATIENCE_S)
+        assert not waiting.done()
+        assert not warmth.is_warm(A)
+        loader.allowed[A].set()
+        waiting.result(PATIENCE_S)
+    assert warmth.is_warm(A)
+    warmth.wait(A, never)
+    assert loader.done == [A]
+
+
+def test_whoever_waits_can_be_stopped_while_loading_goes_on_for_ever(warmth, loader):
+    stop = threading.Event()
+    with ThreadPoolExecutor() as threads:
+        waiting = threads.submit(warmth.wait, A, stop.is_set)
+        assert loader.begun[A].wait(PATIENCE_S)
+        stop.set()
+        with pytest.raises(Cancelled):
+            waiting.result(PATIENCE_S)
+        # Nobody waits for it any more, so that another one gets its turn.
+        loader.allowed[B].set()
+        threads.submit(warmth.wait, B, never).result(PATIENCE_S)
+    assert loader.abandoned == [A]
+    assert not warmth.is_warm(A)
+
+
+def test_what_is_waited_for_comes_before_what_is_wished_for(warmth, loader):
+    warmth.wish((C, A, B))
+    assert loader.begun[C].wait(PATIENCE_S)
+    with ThreadPoolExecutor() as threads:
+        waiting = threads.submit(warmth.wait, B, never)
+        assert loader.begun[B].wait(PATIENCE_S)
+        for allowed in loader.allowed.values():
+            allowed.set()
+        waiting.result(PATIENCE_S)
+        for need in (A, B, C):
+            threads.submit(warmth.wait, need, never).result(PATIENCE_S)
+    assert loader.started[:2] == [C, B]
+    assert loader.abandoned == [C]
+    assert loader.done[0] == B
+    assert sorted(loader.done) == [A, B, C]
+
+
+def test_the_newest_wish_comes_first_and_the_earlier_ones_later(warmth, loader):
+    warmth.wish((C,))
+    assert loader.begun[C].wait(PATIENCE_S)
+    warmth.wish((A, B))
+    assert loader.begun[A].wait(PATIENCE_S)
+    for allowed in loader.allowed.values():
+        allowed.set()
+    for need in (A, B, C):
+        warmth.wait(need, never)
+    assert loader.abandoned == [C]
+    assert sorted(loader.done) == [A, B, C]
+
+
+def test_nobody_waits_once_it_is_closed(warmth, loader):
+    with ThreadPoolExecutor() as threads:
+        waiting = threads.submit(warmth.wait, A, never)
+        assert loader.begun[A].wait(PATIENCE_S)
+        warmth.close()
+        waiting.result(PATIENCE_S)
+    warmth.wait(B, never)
+    assert loader.done == []
+
+
+@pytest.mark.parametrize("error", [InputError("Too small."), RuntimeError("No code.")])
+def test_a_failure_lets_the_run_try_itself(error, caplog):
+    def fail(need, should_stop):
+        raise error
+
+    warmth = Warmth(fail)
+    thread = threading.Thread(target=warmth.serve)
+    thread.start()
+    warmth.wait(A, never)
+    assert warmth.is_warm(A)
+    assert ("failed" in caplog.text) == isinstance(error, RuntimeError)
+    warmth.close()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_nobody_waits_for_a_thread_that_has_ended():
+    def crash(need, should_stop):
+        raise SystemExit
+
+    warmth = Warmth(crash)
+    thread = threading.Thread(target=warmth.serve)
+    thread.start()
+    warmth.wait(A, never)
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+    warmth.wait(B, never)
+
+
+def test_a_method_is_loaded_with_its_rehearsals(stub, monkeypatch):  # noqa: F811
+    seen = []
+    monkeypatch.setattr(warming, "run", lambda job, **_: seen.append(job.params))
+    load(Need("stub", 1))
+    load(Need("car", 3))
+    assert seen == [
+        stub.params(),
+        *(methods()["car"].params(synthesis=each) for each in ("spectrum", "recursion")),
+    ]

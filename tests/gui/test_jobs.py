@@ -165,6 +165,21 @@ def test_a_cancel_after_the_end_was_told_says_nothing(qtbot: Any, make_worker: A
     assert told == [("finished", "end")]
 
 
+def test_what_comes_first_takes_no_place_and_can_be_cancelled(qtbot: Any, make_worker: Any) -> None:
+    slots = Slots(1)
+    (waiting, told), (running, others) = make_worker(slots), make_worker(slots)
+    begun = threading.Event()
+    waiting.submit(lambda task: "never", first=until_stopped(begun))
+    assert begun.wait(60)
+    running.submit(lambda task: "ran", first=lambda task: None)
+    qtbot.waitUntil(lambda: told != [] or others == [("finished", "ran")], timeout=10_000)
+    waiting.cancel()
+    qtbot.waitUntil(lambda: not waiting.busy, timeout=10_000)
+    assert told == [("cancelled", None)]
+    waiting.submit(lambda task: "later")
+    qtbot.waitUntil(lambda: ("finished", "later") in told, timeout=10_000)
+
+
 def test_no_more_run_than_there_are_places(qtbot: Any, make_worker: Any) -> None:
     slots = Slots(1)
     (first, first_told), (second, second_told) = make_worker(slots), make_worker(slots)

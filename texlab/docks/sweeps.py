@@ -30,6 +30,7 @@ from texlab_core.registry import find_method
 from texlab_core.sheets.sweep import show
 from texlab_core.sheets.sweep_recipes import bundled_sweeps
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
+from texlab_core.warming import Need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -195,7 +196,10 @@ class SweepsDock(FramedDock):
         if self._worker is None:
             self._worker = self._make_worker()
         self._started_at = time.perf_counter()
-        self._worker.submit(SweepRun(sweep, controller.slots))
+        need, warmth = Need(column.method, exemplar.channels), controller.warmth
+        self._worker.submit(
+            SweepRun(sweep, controller.slots), first=lambda task: warmth.wait(need, task.should_stop)
+        )
         self._progressed(SweepProgress((), 0.0))
 
     def _make_worker(self) -> Worker:

@@ -225,7 +225,7 @@ def status_parts(scene: ColumnScene) -> list[str]:
     if scene.status == "failed":
         return [scene.message]
     parts = []
-    sign = _SIGNS[scene.status]
+    sign = scene.message if scene.status == "waiting" and scene.message else _SIGNS[scene.status]
     if sign:
         parts.append(sign)
     if scene.status == "cancelled" and scene.resumable:

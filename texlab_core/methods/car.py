@@ -113,6 +113,7 @@ register(
             "periodic textures with a period longer than five pixels",
             "strictly periodic textures, for which the recursion is unstable",
         ),
+        rehearsals=(CarParams(synthesis="recursion"),),
         order=42,
     )
 )

@@ -269,6 +269,8 @@ register(
             "gradients of colour or size",
         ),
         check=check,
+        # Sets of candidates that are never listed as a whole.
+        rehearsals=(DeBonetParams(alpha=4.0),),
         order=20,
     )
 )
