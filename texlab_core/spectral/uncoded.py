@@ -105,10 +105,18 @@ def spectra(
         found.append(half)
     if spot.planes.shape[1:] != size:
         # All channels alike, so that colours stay.
-        power = sum(mean_square(half, size[1]) for half in found)
-        wanted = float(np.square(spot.planes, dtype=np.float64).sum() / spot.planes[0].size)
+        power, last = 0.0, f"{stage} {len(found)}"
+        for half in found:
+            power += mean_square(half, size[1])
+            yield progress.at(last)
+        squares = np.empty(spot.planes.shape)
+        for plane, square in zip(spot.planes, squares, strict=True):
+            np.square(plane, out=square, dtype=np.float64)
+            yield progress.at(last)
+        wanted = float(squares.sum() / spot.planes[0].size)
         for half in found:
             half *= np.float32(np.sqrt(wanted / power)) if power > 0 else np.float32(1)
+            yield progress.at(last)
     return found
 
 
