@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.pictures import to_picture
 from texlab.scene import Frame, Picture
+from texlab_core.errors import Cancelled
 from texlab_core.inputs import ImageInput
 from texlab_core.registry import find_method
 from texlab_core.run import Job, run
@@ -145,22 +146,30 @@ class ColumnRun:
 
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
         self.state = getattr(result.details, "state", None)
-        metrics |= {} if self.draft else spectral_distances(result)
+        metrics |= {} if self.draft else spectral_distances(result, task.should_stop)
         return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
 
 
-def spectral_distances(result: Result) -> dict[str, float]:
-    """Return how far the result's spectrum is from the exemplar's: dB, and share of the power moved."""
+def spectral_distances(result: Result, should_stop: Callable[[], bool]) -> dict[str, float]:
+    """Return how far the result's spectrum is from the exemplar's: dB, and share of the power moved.
+
+    Raises ``Cancelled`` when ``should_stop``, which is asked every few milliseconds, says so.
+    """
     from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
 
     exemplar = result.job.inputs.get("exemplar")
     if not isinstance(exemplar, ImageInput) or exemplar.channels != result.image.shape[2]:
         return {}
-    first, second = power_spectrum(exemplar.pixels), power_spectrum(result.image)
-    return {
-        "spectral-distance": log_spectral_distance(first, second),
-        "spectral-variation": total_variation(first, second),
-    }
+
+    def look() -> None:
+        if should_stop():
+            raise Cancelled
+
+    first, second = power_spectrum(exemplar.pixels, look), power_spectrum(result.image, look)
+    look()
+    distance = log_spectral_distance(first, second)
+    look()
+    return {"spectral-distance": distance, "spectral-variation": total_variation(first, second)}
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
