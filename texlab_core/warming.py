@@ -18,6 +18,7 @@ from texlab_core.errors import Cancelled, InputError
 from texlab_core.images import as_exemplar
 from texlab_core.registry import find_method, methods
 from texlab_core.run import Job, Streams, run
+from texlab_core.stats import histogram
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -56,6 +57,8 @@ def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
     for params in (method.params(), *method.rehearsals):
         job = Job(method=method.id, inputs={"exemplar": exemplar}, params=params, size=OUTPUT)
         run(job, should_stop=should_stop, threads=1)
+    # Large planes are sorted in pieces, by kernels that no tiny run needs.
+    histogram.warm_up()
 
 
 def warm_up(should_stop: Callable[[], bool] | None = None) -> tuple[Need, ...]:

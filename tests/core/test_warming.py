@@ -12,6 +12,7 @@ import pytest
 from tests.stub_method import stub  # noqa: F401
 from texlab_core import warming
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.kernels import ranks
 from texlab_core.registry import methods
 from texlab_core.run import run
 from texlab_core.warming import Need, Warmth, every_need, load, warm_up
@@ -52,6 +53,7 @@ from numba.core.dispatcher import Dispatcher
 from texlab_core.errors import InputError
 from texlab_core.images import as_exemplar
 from texlab_core.params import describe
+from texlab_core.kernels import ranks
 from texlab_core.registry import methods
 from texlab_core.run import Job, run
 from texlab_core.warming import warm_up
@@ -241,3 +243,15 @@ def test_a_method_is_loaded_with_its_rehearsals(stub, monkeypatch):  # noqa: F81
         stub.params(),
         *(methods()["car"].params(synthesis=each) for each in ("spectrum", "recursion")),
     ]
+
+
+def test_kernels_that_only_large_planes_need_are_loaded_too(monkeypatch):
+    called = set()
+    names = ["count", "starts", "scatter_first", "scatter_next", "shuffle_ties", "assign"]
+    for name in names:
+        kernel = getattr(ranks, name)
+        monkeypatch.setattr(
+            ranks, name, lambda *given, name=name, kernel=kernel: (called.add(name), kernel(*given))[1]
+        )
+    load(Need("heeger-bergen", 1))
+    assert called == set(names)
