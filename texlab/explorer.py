@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog, QMenu, QMessageBox
 
-from texlab.controller import Controller, Prepared
+from texlab.controller import Controller
 from texlab.crash import CrashHandler
 from texlab.dock_host import DockHost
 from texlab.docks import dock_classes
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from texlab.docks.base import Dock
+    from texlab.preparation import Prepared
     from texlab.scene import Mark, Picture, Scene
     from texlab.storage.settings import Settings
     from texlab.theme import ThemeSource

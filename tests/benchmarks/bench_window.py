@@ -149,18 +149,18 @@ def test_cancel(qtbot: Any, tmp_path: Any, method: str) -> None:
     with window(qtbot, tmp_path, [(method, more)], 512, "gallery:stochastic-bark") as explorer:
         controller = explorer.controller
         (column,) = explorer.session.state.columns
-        runtime = controller._runtimes
-        qtbot.waitUntil(lambda: runtime[column.id].scene.status in ("running", "finished"), timeout=60_000)
+        runner = controller._runners
+        qtbot.waitUntil(lambda: runner[column.id].scene.status in ("running", "finished"), timeout=60_000)
         for turn in range(12):
             controller.run_column(column.id)
-            qtbot.waitUntil(lambda: runtime[column.id].scene.status == "running", timeout=60_000)
+            qtbot.waitUntil(lambda: runner[column.id].scene.status == "running", timeout=60_000)
             lateness(qtbot, 60 + 23 * turn)
-            if runtime[column.id].scene.status != "running":
+            if runner[column.id].scene.status != "running":
                 continue
             began = time.perf_counter()
             controller.stop_column(column.id)
             # Asked directly: the measure is when the thread is free, not when the window hears of it.
-            while runtime[column.id].worker.occupied:
+            while runner[column.id].worker.occupied:
                 time.sleep(0.0005)
             taken.append(time.perf_counter() - began)
     print(

@@ -403,7 +403,7 @@ def test_closing_joins_a_sweep_that_runs(qtbot, bench):
 
 def test_without_an_exemplar_nothing_starts(qtbot, bench):
     here = bench()
-    here.controller._prepared = None
+    here.controller._preparation.prepared = None
     start(qtbot, here.dock)
     assert here.dock.panel.error.text() == "There is no exemplar yet."
 

@@ -85,7 +85,7 @@ def test_cancel_forgets_patient_requests_too(worker, qtbot):
 
 def test_a_quick_method_is_dragged_at_full_size(open_window, texture, qtbot, monkeypatch):
     # Quick on any machine, however busy it is.
-    monkeypatch.setattr("texlab.controller.draft_size", lambda size, seconds: None)
+    monkeypatch.setattr("texlab.column_runner.draft_size", lambda size, seconds: None)
     explorer = open_window(str(texture), [("de-bonet", DeBonetParams())])
     controller, session = explorer.controller, explorer.session
     column = session.state.columns[0]

@@ -421,7 +421,7 @@ def test_efros_leung_is_drafted_while_a_slider_is_dragged(
     params = texlab_params("efros-leung").replace(window=5)
     explorer = open_window(str(texture), [("efros-leung", params)], size=64)
     (column_id,) = ids(explorer)
-    explorer.controller._runtimes[column_id].seconds = 10.0
+    explorer.controller._runners[column_id].seconds = 10.0
     explorer.controller.edit_params(column_id, params.replace(eps=0.3), "eps", False)
     scene = explorer.controller.column_scene
     qtbot.waitUntil(lambda: scene(column_id).draft and scene(column_id).status == "finished", timeout=20_000)
