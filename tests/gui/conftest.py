@@ -100,7 +100,7 @@ def explorer(open_window: Callable[..., Explorer], texture: Path) -> Explorer:
 def wait_idle(qtbot: Any, explorer: Explorer) -> None:
     qtbot.waitUntil(lambda: explorer.idle, timeout=PATIENCE_MS)
     # What was announced last is shown on the next turn of the event loop.
-    with qtbot.waitSignal(explorer.painted, timeout=PATIENCE_MS):
+    with qtbot.waitSignal(explorer.presenter.painted, timeout=PATIENCE_MS):
         explorer.controller._refresh.start()
 
 

@@ -263,7 +263,7 @@ def test_a_new_column_comes_into_sight(qtbot: Any, explorer: Explorer) -> None:
         qtbot.keyClick(explorer.window, Qt.Key.Key_D, CONTROL)
     wait_idle(qtbot, explorer)
     explorer.window.actions_by_name["previous"].trigger()
-    explorer._select(explorer.session.add_column(*hb()))
+    explorer.handlers.select(explorer.session.add_column(*hb()))
     new = ids(explorer)[-1]
 
     def whole() -> bool:
@@ -442,11 +442,11 @@ def test_a_saved_file_gets_its_suffix(
 ) -> None:
     answer = (str(tmp_path / "out"), "TIFF (*.tif)")
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: answer)
-    explorer.export(ids(explorer)[0])
+    explorer.exchange.export(ids(explorer)[0])
     qtbot.waitUntil((tmp_path / "out.tif").exists, timeout=10_000)
     wait_idle(qtbot, explorer)
     assert explorer.settings.text("save-folder") == str(tmp_path)
-    explorer.export(ids(explorer)[0])
+    explorer.exchange.export(ids(explorer)[0])
     assert "already there" in explorer.window.message_bar.label.text()
 
 

@@ -388,9 +388,9 @@ def test_twenty_thousand_signals(qtbot: Any) -> None:
 
 def test_help_opens_the_page_of_the_method(qtbot: Any, explorer: Explorer) -> None:
     qtbot.keyClick(explorer.window, Qt.Key.Key_F1)
-    assert explorer.help is not None
-    assert explorer.help.browser.page == "heeger-bergen"
-    assert "pyramid" in explorer.help.browser.toPlainText().lower()
+    assert explorer.desk.help is not None
+    assert explorer.desk.help.browser.page == "heeger-bergen"
+    assert "pyramid" in explorer.desk.help.browser.toPlainText().lower()
 
 
 def test_a_map_is_laid_over_the_picture(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> None:
