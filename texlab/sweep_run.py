@@ -11,7 +11,8 @@ from texlab.column_run import TaskLike, with_exemplar
 from texlab.pictures import to_picture
 from texlab_core.errors import InputError
 from texlab_core.run import Job
-from texlab_core.sheets.sweep import Cell, Places, Sweep, Vary, run_sweep
+from texlab_core.sheets.sweep import Cell, Sweep, Vary
+from texlab_core.sheets.sweep_running import Places, run_sweep
 
 if TYPE_CHECKING:
     from texlab.scene import Picture

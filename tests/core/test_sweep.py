@@ -13,7 +13,8 @@ from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F
 
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.run import AnalysisCache, Job, run
-from texlab_core.sheets.sweep import Cell, Sweep, Vary, evidence_of, run_sweep, sweep_of
+from texlab_core.sheets.sweep import Cell, Sweep, Vary, sweep_of
+from texlab_core.sheets.sweep_running import evidence_of, run_sweep
 from texlab_core.steps import Map, Output
 
 pytestmark = pytest.mark.usefixtures("stub")

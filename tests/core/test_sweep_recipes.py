@@ -17,7 +17,7 @@ from texlab_core.inputs import Crop
 from texlab_core.params import describe
 from texlab_core.registry import find_method
 from texlab_core.run import Job
-from texlab_core.sheets.sweep import Cell, Vary, run_sweep, sweep_of
+from texlab_core.sheets.sweep import Cell, Vary, sweep_of
 from texlab_core.sheets.sweep_recipes import (
     TEXT_KEY,
     ExemplarChoice,
@@ -26,6 +26,7 @@ from texlab_core.sheets.sweep_recipes import (
     find_sweep,
     sweep_recipe_from_json,
 )
+from texlab_core.sheets.sweep_running import run_sweep
 from texlab_core.sheets.sweep_sheet import sweep_sheet
 
 pytestmark = pytest.mark.usefixtures("stub")

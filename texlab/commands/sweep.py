@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
     """Check everything, run the cells, save the sheet, report."""
     from texlab_core.errors import ParamError
     from texlab_core.sheets.contact_sheet import check_sheet
-    from texlab_core.sheets.sweep import run_sweep
+    from texlab_core.sheets.sweep_running import run_sweep
     from texlab_core.sheets.sweep_sheet import sheet_columns, write_sheet
 
     out = output_file(args.out)

@@ -60,7 +60,7 @@ def frames(method: str, exemplar: ImageInput, size: int, seed: int = 1, **values
 
 def evidence(result: Result) -> str:
     """Return the share of copied neighbours as a caption."""
-    from texlab_core.sheets.sweep import evidence_of
+    from texlab_core.sheets.sweep_running import evidence_of
 
     copied = evidence_of(result)[0]
     return "" if copied is None else f"copied {copied:.2f}"

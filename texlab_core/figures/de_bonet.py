@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from texlab_core.figures import Figure
 from texlab_core.figures._tools import evidence, make, page, picture, texture, title_of
 from texlab_core.sheets.contact_sheet import Tile
-from texlab_core.sheets.sweep import run_sweep
 from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_running import run_sweep
 
 if TYPE_CHECKING:
     import numpy as np

@@ -1,34 +1,26 @@
-"""Sweeps: one or two knobs over ranges, a grid of jobs, run side by side."""
+"""Sweeps: one or two knobs over ranges, a grid of jobs."""
 
 from __future__ import annotations
 
 import dataclasses
 import difflib
-import logging
 import math
-import os
-import queue
-import threading
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from texlab_core import strict_json
-from texlab_core.errors import Cancelled, InputError, ParamError
+from texlab_core.errors import InputError, ParamError
 from texlab_core.params import Field, Knob, describe, frozen_mapping
 from texlab_core.registry import find_method
-from texlab_core.run import MAX_SEED, AnalysisCache, Job, check_seed, run
+from texlab_core.run import MAX_SEED, Job, check_seed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from texlab_core.params import Params
-    from texlab_core.steps import MapKind, Output, Result, Step
+    from texlab_core.steps import Result
 
 MAX_CELLS = 400
 _POLL_S = 0.01
@@ -232,194 +224,6 @@ def show(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
     return str(value) if isinstance(value, int | str) else type(value).__name__
-
-
-class Places(Protocol):
-    """Room that is shared with other work: a cell runs while it holds a place."""
-
-    def acquire(self, should_stop: Callable[[], bool]) -> bool:
-        """Wait for a place; False when ``should_stop`` says so first."""
-        ...
-
-    def release(self) -> None:
-        """Give the place back."""
-        ...
-
-    def wake(self) -> None:
-        """Make everyone who waits ask ``should_stop`` again."""
-        ...
-
-
-def run_sweep(
-    sweep: Sweep,
-    on_cell: Callable[[Cell], None] | None = None,
-    should_stop: Callable[[], bool] | None = None,
-    *,
-    on_progress: Callable[[float], None] | None = None,
-    cache: AnalysisCache | None = None,
-    workers: int | None = None,
-    places: Places | None = None,
-) -> tuple[Cell, ...]:
-    """Run every cell, as many side by side as there are cores.
-
-    No bit of a cell depends on the others, on their order or on the number of workers. Cells that share an
-    analysis make it once. A cell that fails keeps its sentence, the others go on.
-
-    Parameters
-    ----------
-    sweep
-        The grid.
-    on_cell
-        Called with each cell as it finishes, in this thread, in the order of finishing.
-    should_stop
-        Asked in this thread about a hundred times a second.
-    on_progress
-        Called in this thread with the share done, 0 .. 1, never falling.
-    cache
-        Where analyses are kept and found; a new one when None.
-    workers
-        Threads; None means one for each core.
-    places
-        Where each cell takes a place while it runs; None means that there is room.
-
-    Returns
-    -------
-    tuple of Cell
-        In the order of the grid.
-
-    Raises
-    ------
-    Cancelled
-        When ``should_stop`` said so; every thread has ended then.
-    """
-    state = _State(sweep, AnalysisCache() if cache is None else cache, places)
-    count = max(1, min(len(sweep.jobs), (os.cpu_count() or 1) if workers is None else workers))
-    cells: dict[int, Cell] = {}
-    with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
-        try:
-            # A lone worker's transforms may use their usual threads; a place is one core.
-            threads = None if count == 1 and places is None else 1
-            for index in range(len(sweep.jobs)):
-                pool.submit(state.run_cell, index, threads)
-            while len(cells) < len(sweep.jobs):
-                if should_stop is not None and should_stop():
-                    raise Cancelled
-                try:
-                    outcome = state.finished.get(timeout=_POLL_S)
-                except queue.Empty:
-                    outcome = None
-                if on_progress is not None:
-                    on_progress(float(state.fractions.mean()))
-                if outcome is not None:
-                    cells[outcome.index] = outcome
-                    if on_cell is not None:
-                        on_cell(outcome)
-        finally:
-            state.stop.set()
-            if places is not None:
-                places.wake()
-            pool.shutdown(wait=True, cancel_futures=True)
-    return tuple(cells[index] for index in sorted(cells))
-
-
-class _State:
-    """What the threads of one sweep share."""
-
-    def __init__(self, sweep: Sweep, cache: AnalysisCache, places: Places | None) -> None:
-        self.sweep = sweep
-        self.cache = cache
-        self.places = places
-        self.stop = threading.Event()
-        self.finished: queue.SimpleQueue[Cell] = queue.SimpleQueue()
-        self.fractions = np.zeros(len(sweep.jobs))
-        self._locks: dict[tuple[object, ...], threading.Lock] = {}
-        self._guard = threading.Lock()
-
-    def run_cell(self, index: int, threads: int | None) -> None:
-        if self.places is None:
-            self._run_cell(index, threads)
-        elif self.places.acquire(self.stop.is_set):
-            try:
-                self._run_cell(index, threads)
-            finally:
-                self.places.release()
-
-    def _run_cell(self, index: int, threads: int | None) -> None:
-        make = partial(Cell, index=index, job=self.sweep.jobs[index], values=self.sweep.values(index))
-        try:
-            cell = make(**self._run(index, threads))
-        except Cancelled:
-            return
-        except InputError as error:
-            cell = make(error=str(error))
-        except MemoryError:
-            cell = make(error="There is not enough memory for this; try a smaller size.")
-        except Exception as error:
-            logging.getLogger(__name__).exception("A cell of a sweep failed")
-            cell = make(error=f"Something unexpected happened ({type(error).__name__}: {error}).")
-        self.fractions[index] = 1.0
-        self.finished.put(cell)
-
-    def _run(self, index: int, threads: int | None) -> dict[str, Any]:
-        job = self.sweep.jobs[index]
-        turn = _Turn(self._lock_of(job), self.stop)
-
-        def watch(step: Step) -> None:
-            if step.phase == "synthesis":
-                turn.give_back()
-            share = 0.1 * step.fraction if step.phase == "analysis" else 0.1 + 0.89 * step.fraction
-            self.fractions[index] = max(self.fractions[index], share)
-
-        try:
-            if self.cache.get(job.analysis_key) is None:
-                turn.take()
-            result = run(job, watch, self.stop.is_set, cache=self.cache, threads=threads)
-        finally:
-            turn.give_back()
-        copied, candidates = evidence_of(result)
-        light = dataclasses.replace(result, model=None, maps={}, details=None)
-        return {"result": light, "copied": copied, "candidates": candidates}
-
-    def _lock_of(self, job: Job) -> threading.Lock:
-        with self._guard:
-            return self._locks.setdefault(job.analysis_key, threading.Lock())
-
-
-class _Turn:
-    """A lock that is waited for in short naps, and given back once."""
-
-    def __init__(self, lock: threading.Lock, stop: threading.Event) -> None:
-        self._lock = lock
-        self._stop = stop
-        self._held = False
-
-    def take(self) -> None:
-        while not self._held:
-            if self._stop.is_set():
-                raise Cancelled
-            self._held = self._lock.acquire(timeout=_POLL_S)
-
-    def give_back(self) -> None:
-        if self._held:
-            self._held = False
-            self._lock.release()
-
-
-def evidence_of(result: Output) -> tuple[float | None, float | None]:
-    """Return the share of copied neighbours and the median candidate count, None where there is no such map."""
-    from texlab_core.stats.copying import continuous_share
-
-    source = _first_map(result, "source")
-    copied = None if source is None else continuous_share(source)
-    candidates = result.measures.get("median-candidates")
-    if candidates is None and (counts := _first_map(result, "count")) is not None:
-        candidates = float(np.median(counts))
-    return copied, candidates
-
-
-def _first_map(result: Output, kind: MapKind) -> NDArray[Any] | None:
-    # One by one: some maps are only computed when they are looked at.
-    return next((each.data for each in map(result.maps.__getitem__, result.maps) if each.kind == kind), None)
 
 
 def sweep_of(base: Job, texts: list[str]) -> Sweep:
