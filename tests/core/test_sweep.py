@@ -207,7 +207,7 @@ def test_a_failing_cell_keeps_its_sentence_and_the_others_go_on():
 
 
 def test_an_unexpected_failure_is_logged_and_kept(caplog, monkeypatch):
-    monkeypatch.setattr("texlab_core.sheets.sweep.evidence_of", lambda _: 1 / 0)
+    monkeypatch.setattr("texlab_core.sheets.sweep_running.evidence_of", lambda _: 1 / 0)
     cells = run_sweep(sweep_of(base(), ["level=1,2"]))
     assert cells[0].error == "Something unexpected happened (ZeroDivisionError: division by zero)."
     assert "ZeroDivisionError" in caplog.text
