@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -73,8 +74,11 @@ STUB = Method(
 @pytest.fixture
 def stub(monkeypatch):
     """Make the registry hold the stub (and what it holds anyway)."""
-    known = dict(registry.methods()) | {"stub": STUB}
-    monkeypatch.setattr(registry, "methods", lambda: known)
+    original = registry.methods
+    known = dict(original()) | {"stub": STUB}
+    for name, module in list(sys.modules.items()):
+        if name.startswith("texlab") and getattr(module, "methods", None) is original:
+            monkeypatch.setattr(module, "methods", lambda: known)
     analyses.clear()
     running.clear()
     return STUB

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.pictures import to_picture
@@ -36,6 +36,10 @@ class TaskLike(Protocol):
 
     def progress(self, value: object) -> None:
         """Report."""
+        ...
+
+    def give_way(self) -> float:
+        """Let what goes first have the place for a while; return the seconds that it took."""
         ...
 
 
@@ -123,10 +127,12 @@ class ColumnRun:
         """Run to the end, reporting on the way."""
         start = time.perf_counter()
         kept = 0
+        away = 0.0
         metrics: dict[str, float] = {}
 
         def watch(step: Step) -> None:
-            nonlocal kept
+            nonlocal kept, away
+            away += task.give_way()
             metrics.update(step.metrics)
             self.state = step.state
             due = not self.draft and task.due()
@@ -138,13 +144,14 @@ class ColumnRun:
                 self.frames.append(Frame(step.frame, picture))
             if due:
                 fraction = step.fraction if step.phase == "synthesis" else 0.0
-                elapsed = time.perf_counter() - start
+                elapsed = time.perf_counter() - start - away
                 message = step.stage or step.phase
                 task.progress(
                     Progress(fraction, message, dict(metrics), picture, image, tuple(self.frames), elapsed)
                 )
 
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
+        result = replace(result, elapsed_s=result.elapsed_s - away)
         self.state = getattr(result.details, "state", None)
         metrics |= {} if self.draft else spectral_distances(result, task.should_stop)
         return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from texlab.column_run import ColumnRun, Drafted, DraftRun, Finished, Loading, Progress, Waits, with_exemplar
-from texlab.jobs import Slots, Worker
+from texlab.jobs import Worker
 from texlab.resolve import draft_size
 from texlab.scene import ColumnScene
+from texlab.slots import Rank, Slots
 from texlab_core.inputs import ArraysInput
 from texlab_core.registry import find_method
 from texlab_core.run import AnalysisCache, Job
@@ -80,9 +81,19 @@ class ColumnRunner(QObject):
     # What it is asked for.
 
     def start(
-        self, column: Column, state: State, exemplar: ImageInput, *, draft: bool = False, go_on: bool = False
+        self,
+        column: Column,
+        state: State,
+        exemplar: ImageInput,
+        *,
+        draft: bool = False,
+        go_on: bool = False,
+        alone: bool = False,
     ) -> None:
-        """Run the column's job of this state: as a draft, or going on from where it came to an end."""
+        """Run the column's job of this state: as a draft, or going on from where it came to an end.
+
+        What is asked of this column ``alone`` goes before what all of them have to do.
+        """
         method = find_method(column.method)
         full = column.size or state.size
         self._full = state.size
@@ -102,11 +113,12 @@ class ColumnRunner(QObject):
             self._kept if go_on else None,
         )
         loading = Loading(self._shared.warmth, Need(method.id, exemplar.channels))
+        rank = Rank.DRAFT if draft else Rank.CHANGED if alone else Rank.REST
         if own_draft:
-            self.worker.submit(DraftRun(make_job), patient=patient, first=loading)
+            self.worker.submit(DraftRun(make_job), patient=patient, first=loading, rank=rank)
         else:
             self._run = ColumnRun(make_job, self._shared.cache, draft=draft)
-            self.worker.submit(self._run, patient=patient, first=loading)
+            self.worker.submit(self._run, patient=patient, first=loading, rank=rank)
 
     def _announce(self, column: Column, *, small: bool) -> None:
         changes: dict[str, Any] = {

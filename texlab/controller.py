@@ -11,10 +11,11 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from texlab.column_runner import ColumnRunner, Shared
 from texlab.errands import Errands
-from texlab.jobs import Request, Slots, Worker
+from texlab.jobs import Request, Worker
 from texlab.preparation import Preparation, Prepared, rescaled
 from texlab.resolve import difference
 from texlab.scene import ColumnScene, Mark, Probe, Scene
+from texlab.slots import Slots
 from texlab_core.registry import find_method
 from texlab_core.run import AnalysisCache
 from texlab_core.warming import Need, Warmth, every_need
@@ -159,7 +160,7 @@ class Controller(QObject):
         for column_id in columns:
             runner = self._runners.get(column_id)
             if runner is not None and runner.drafted:
-                self.run_column(column_id)
+                self._start(column_id, alone=len(columns) == 1)
 
     def point_at(self, column_id: int, row: int, column: int) -> None:
         """Ask about the pixel under the pointer, unless another one is pinned."""
@@ -189,18 +190,18 @@ class Controller(QObject):
 
     def run_column(self, column_id: int) -> None:
         """Run a column at full size."""
-        self._start(column_id)
+        self._start(column_id, alone=True)
 
     def go_on(self, column_id: int) -> None:
         """Go on from where a column was stopped or had finished, also at a larger size."""
         runner = self._runners.get(column_id)
         if runner is not None and runner.resumable:
-            self._start(column_id, go_on=True)
+            self._start(column_id, go_on=True, alone=True)
 
     def run_all(self) -> None:
         """Run every column."""
         for column in self.session.state.columns:
-            self.run_column(column.id)
+            self._start(column.id)
 
     def stop_column(self, column_id: int) -> None:
         """Stop a column; the others go on."""
@@ -257,7 +258,7 @@ class Controller(QObject):
             self._prepare(after.sample)
         elif self.prepared is not None:
             for column_id in changes.run:
-                self._start(column_id, draft=self._dragging)
+                self._start(column_id, draft=self._dragging, alone=len(changes.run) == 1)
         self._refresh.start()
 
     def _let_go(self, runner: ColumnRunner) -> None:
@@ -295,13 +296,13 @@ class Controller(QObject):
         for runner in self._runners.values():
             runner.fail(sentence)
 
-    def _start(self, column_id: int, *, draft: bool = False, go_on: bool = False) -> None:
+    def _start(self, column_id: int, *, draft: bool = False, go_on: bool = False, alone: bool = False) -> None:
         runner = self._runners.get(column_id)
         column = self.session.state.column(column_id)
         exemplar = self.exemplar
         if runner is None or column is None or exemplar is None or (self._preparation.busy and not draft):
             return
-        runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on)
+        runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone)
 
     # Loading.
 

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
 
-from texlab.jobs import Slots, Task, Worker
+from texlab.jobs import Task, Worker
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock
     from texlab.scene import Question, Scene
+    from texlab.slots import Slots
 
 NOTHING_YET = "There is nothing to show yet."
 

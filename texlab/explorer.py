@@ -16,13 +16,13 @@ from texlab.editors import register_editors
 from texlab.exchange import Exchange
 from texlab.handlers import Handlers
 from texlab.help_desk import HelpDesk
-from texlab.jobs import Slots
 from texlab.memory import memory_text
 from texlab.opening import Choice, Opener, is_document, last_exemplar
 from texlab.overlays import Overlays
 from texlab.presenter import Presenter
 from texlab.preset_manager import PresetManager
 from texlab.session import Column, Session, State
+from texlab.slots import Slots
 from texlab.storage.autosave import Autosave
 from texlab.storage.settings import columns_from_json, seed_and_size
 from texlab.thumbnails import Thumbnails

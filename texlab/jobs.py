@@ -14,68 +14,19 @@ import os
 import sys
 import threading
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from PySide6.QtCore import QObject, Signal, Slot
 
+from texlab.slots import Rank, Slots
 from texlab_core.errors import Cancelled, InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 log = logging.getLogger(__name__)
 
 PROGRESS_INTERVAL_S = 1 / 60
 NICENESS = 5
-
-
-class Slots:
-    """As many places as there are cores; work beyond that waits for its turn, first come, first served."""
-
-    def __init__(self, count: int) -> None:
-        self._free = count
-        self._waiting: deque[object] = deque()
-        self._changed = threading.Condition()
-
-    @contextlib.contextmanager
-    def place(self, should_stop: Callable[[], bool]) -> Iterator[None]:
-        """Hold a place within the block; raises ``Cancelled`` when ``should_stop`` says so before there is one."""
-        if not self.acquire(should_stop):
-            raise Cancelled
-        try:
-            yield
-        finally:
-            self.release()
-
-    def acquire(self, should_stop: Callable[[], bool]) -> bool:
-        """Wait for a place; False when ``should_stop`` says so first."""
-        ticket = object()
-        with self._changed:
-            self._waiting.append(ticket)
-            try:
-                while not should_stop():
-                    if self._free > 0 and self._waiting[0] is ticket:
-                        self._free -= 1
-                        return True
-                    self._changed.wait()
-                return False
-            finally:
-                self._waiting.remove(ticket)
-                self._changed.notify_all()
-
-    def release(self) -> None:
-        """Give the place back."""
-        with self._changed:
-            self._free += 1
-            self._changed.notify_all()
-
-    def wake(self) -> None:
-        """Make everyone who waits ask ``should_stop`` again."""
-        with self._changed:
-            self._changed.notify_all()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +39,10 @@ class _Event:
 class Task:
     """What a request sees of the world while it runs (in the worker's thread)."""
 
-    def __init__(self, worker: Worker, generation: int) -> None:
+    def __init__(self, worker: Worker, generation: int, rank: Rank) -> None:
         self._worker = worker
         self.generation = generation
+        self._rank = rank
         self._last = 0.0
 
     def should_stop(self) -> bool:
@@ -106,6 +58,11 @@ class Task:
         self._last = time.perf_counter()
         self._worker._post_progress(self.generation, value)
 
+    def give_way(self) -> float:
+        """Let what goes first have the place for a while; return the seconds that it took."""
+        slots = self._worker._slots
+        return 0.0 if slots is None else slots.give_way(self.should_stop, self._rank)
+
 
 Request = Callable[[Task], Any]
 
@@ -114,6 +71,7 @@ Request = Callable[[Task], Any]
 class _Asked:
     request: Request
     first: Request | None
+    rank: Rank
 
 
 class Worker(QObject):
@@ -169,7 +127,14 @@ class Worker(QObject):
         with self._mail:
             return self._runs or self._request is not None
 
-    def submit(self, request: Request, *, patient: bool = False, first: Request | None = None) -> int:
+    def submit(
+        self,
+        request: Request,
+        *,
+        patient: bool = False,
+        first: Request | None = None,
+        rank: Rank = Rank.REST,
+    ) -> int:
         """Run ``request`` instead of whatever waits or runs; returns its generation number.
 
         ``first`` waits for what the request needs: it is called before a place is taken and ``started`` is told.
@@ -180,7 +145,7 @@ class Worker(QObject):
             self._newest += 1
             if not patient:
                 self._oldest = self._newest
-            self._request = _Asked(request, first)
+            self._request = _Asked(request, first, rank)
             self._owes = True
             self._mail.notify()
         if self._slots is not None:
@@ -236,7 +201,7 @@ class Worker(QObject):
                 generation = self._newest
                 self._runs = True
             assert asked is not None
-            self._run_one(asked, Task(self, generation))
+            self._run_one(asked, Task(self, generation, asked.rank))
             del asked
             with self._mail:
                 self._runs = False
@@ -244,7 +209,11 @@ class Worker(QObject):
             self._tell(_Event(generation, "idle"))
 
     def _run_one(self, asked: _Asked, task: Task) -> None:
-        place = self._slots.place(task.should_stop) if self._slots is not None else contextlib.nullcontext()
+        place = (
+            self._slots.place(task.should_stop, asked.rank)
+            if self._slots is not None
+            else contextlib.nullcontext()
+        )
         try:
             if asked.first is not None:
                 asked.first(task)

@@ -64,9 +64,7 @@ def test_all_pictures_are_scaled_down_together():
 @pytest.mark.parametrize("side", [16, 64, 128, 256, 512])
 @pytest.mark.parametrize("heads", [False, True])
 def test_texts_have_ink_and_none_is_cut_off(side, heads):
-    tiles = [
-        Tile(np.ones((side, side, 3), np.float32), ("alpha 0.15", "copied 94%, median 14")) for _ in range(6)
-    ]
+    tiles = [Tile(np.ones((side, side, 3), np.float32), ("alpha 0.15", "copied 94%, median 14")) for _ in range(6)]
     options = {"column_heads": ["alpha 0.05", "alpha 0.1", "alpha 0.2"], "row_heads": ["beta 0", "beta 1"]}
     sheet = contact_sheet(tiles, 3, title=("A title that is long " * 3,), **(options if heads else {}))
     dark = (sheet < 128).any(axis=2)

@@ -12,6 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
 from texlab import app as texlab_app
+from texlab import explorer as texlab_explorer  # noqa: F401 (before any test changes what it imports)
 from texlab.storage.settings import Settings
 from texlab.theme import ThemeSource
 from texlab_core.registry import methods

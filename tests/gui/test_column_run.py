@@ -31,6 +31,9 @@ class Task:
     def progress(self, value):
         raise AssertionError
 
+    def give_way(self):
+        return 0.0
+
 
 def test_distances_are_those_of_the_spectra():
     result = run(job())

@@ -17,8 +17,8 @@ from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
 from texlab.controller import Controller
 from texlab.dock_host import DockHost
 from texlab.docks.sweeps import SweepsDock
-from texlab.jobs import Slots
 from texlab.session import Column, Sample, Session, State
+from texlab.slots import Slots
 from texlab.sweep_run import SweepPlan, with_cell
 from texlab.theme import DARK, LIGHT, ThemeSource
 from texlab.views.contact_sheet_view import packed

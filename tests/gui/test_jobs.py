@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import shiboken6
 
-from texlab.jobs import Slots, Task, Worker
+from texlab.jobs import Task, Worker
+from texlab.slots import Rank, Slots
 from texlab_core.errors import Cancelled, InputError
 
 if TYPE_CHECKING:
@@ -206,6 +207,68 @@ def test_one_that_waits_for_a_place_can_be_cancelled(qtbot: Any, make_worker: An
     qtbot.waitUntil(lambda: not second.busy, timeout=10_000)
     assert told == [("cancelled", None)]
     first.cancel()
+
+
+def in_order(slots: Slots, ranks: list[Rank], told: list[Rank]) -> list[threading.Thread]:
+    """Start a thread for each rank that waits for a place, one after the other."""
+    threads = []
+    for rank in ranks:
+
+        def work(rank: Rank = rank) -> None:
+            with slots.place(lambda: False, rank):
+                told.append(rank)
+
+        threads.append(threading.Thread(target=work))
+        waiting = len(slots._waiting)
+        threads[-1].start()
+        while len(slots._waiting) == waiting:
+            threading.Event().wait(0.001)
+    return threads
+
+
+def test_lower_ranks_go_first_and_equals_in_their_order() -> None:
+    slots = Slots(1)
+    told: list[Rank] = []
+    assert slots.acquire(lambda: False)
+    wanted = [Rank.REST, Rank.CHANGED, Rank.DRAFT, Rank.CHANGED, Rank.REST]
+    threads = in_order(slots, wanted, told)
+    slots.release()
+    for thread in threads:
+        thread.join(60)
+    assert told == sorted(wanted)
+
+
+def test_what_runs_gives_way_to_lower_ranks_only_and_goes_on_before_its_equals() -> None:
+    slots = Slots(1)
+    told: list[Rank] = []
+    with slots.place(lambda: False, Rank.CHANGED):
+        threads = in_order(slots, [Rank.CHANGED, Rank.REST], told)
+        assert slots.give_way(lambda: False, Rank.CHANGED) == 0
+        assert told == []
+        threads += in_order(slots, [Rank.DRAFT], told)
+        assert slots.give_way(lambda: False, Rank.CHANGED) > 0
+        assert told == [Rank.DRAFT]
+    for thread in threads:
+        thread.join(60)
+    assert told == [Rank.DRAFT, Rank.CHANGED, Rank.REST]
+
+
+def test_a_cancel_while_giving_way_loses_no_place() -> None:
+    slots = Slots(1)
+    told: list[Rank] = []
+    with slots.place(lambda: False):
+        threads = in_order(slots, [Rank.DRAFT], told)
+        with pytest.raises(Cancelled):
+            slots.give_way(lambda: True)
+        # It is held until the end of the block.
+        assert told == []
+    for thread in threads:
+        thread.join(60)
+    assert told == [Rank.DRAFT]
+    # One place, no more and no less.
+    assert slots.acquire(lambda: False)
+    assert not slots.acquire(lambda: True)
+    assert slots._free == 0
 
 
 def test_closing_stops_what_runs(make_worker: Any) -> None:

@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, scene_of
 
-from tests.gui.conftest import drag, handle_point, wait_idle
+from tests.gui.conftest import drag, handle_point, ids, result_image, wait_idle
+from tests.stub_method import StubParams
 from texlab.dock_host import DockHost
 from texlab.docks.base import Dock
-from texlab.jobs import Slots, Worker
+from texlab.jobs import Worker
 from texlab.scene import Question
+from texlab.slots import Slots
 from texlab_core.methods.de_bonet import DeBonetParams
+from texlab_core.run import run
 
 
 class Gate:
@@ -152,3 +155,22 @@ def test_a_dock_rests_between_answers_and_ends_with_the_newest(qtbot):
     assert dock.shown[-1] == 19
     assert len(dock.shown) < 20
     host.close()
+
+
+def test_a_changed_column_does_not_wait_for_the_end_of_the_others(open_window, texture, qtbot, monkeypatch, stub):
+    monkeypatch.setattr("texlab.controller.os.cpu_count", lambda: 1)
+    long, short = ("stub", StubParams(rounds=500)), ("stub", StubParams(rounds=2))
+    explorer = open_window(str(texture), [long, short])
+    controller, (first, second) = explorer.controller, ids(explorer)
+    ends = []
+    for each in (first, second):
+        controller._runners[each].worker.finished.connect(lambda _, each=each: ends.append(each))
+    controller.run_all()
+    qtbot.waitUntil(lambda: controller.column_scene(first).status == "running")
+    controller.edit_params(second, StubParams(rounds=2, level=1.0), "level", True)
+    wait_idle(qtbot, explorer)
+    # Whether or not the short one had its first turn before the long one began.
+    assert ends[-2:] == [second, first]
+    job = controller.column_scene(first).result.job
+    assert np.array_equal(result_image(explorer, first), run(job).image)
+    assert controller.column_scene(second).result.measures["copied-share"] == 0.25
