@@ -118,7 +118,7 @@ def find_method(name: str) -> Method:
         When there is none; the message lists the ids.
     """
     known = methods()
-    if name in known:
+    if isinstance(name, str) and name in known:
         return known[name]
     close = difflib.get_close_matches(str(name), known, n=1)
     hint = f" (did you mean {close[0]}?)" if close else ""

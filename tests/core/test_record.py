@@ -492,7 +492,7 @@ def test_files_without_recipe(tmp_path):
             read_recipe(file)
     with pytest.raises(RecipeError, match="there is no such file"):
         read_recipe(tmp_path / "missing.png")
-    with pytest.raises(RecipeError, match="there is no such file"):
+    with pytest.raises(RecipeError, match="is a folder, not a saved result"):
         read_recipe(tmp_path)
     with pytest.raises(RecipeError):
         read_recipe("nul\0l")

@@ -63,3 +63,5 @@ def test_an_unknown_method_is_refused_with_the_closest_one(empty: None) -> None:
         registry.find_method("toynoise")
     with pytest.raises(ParamError, match=r"got 'zzz'\.$"):
         registry.find_method("zzz")
+    with pytest.raises(ParamError, match=r"got \['toy-noise'\]\.$"):
+        registry.find_method(["toy-noise"])  # type: ignore[arg-type]

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.dock_frame import FramedDock
+from texlab.durations import duration, remaining
 from texlab.jobs import Worker
 from texlab.scene import Question
 from texlab.sweep_run import ShownCell, SweepProgress, SweepRun, with_cell
@@ -228,7 +229,7 @@ class SweepsDock(FramedDock):
         elapsed = time.perf_counter() - self._started_at
         left = ""
         if report.fraction > 0.05:
-            left = f" · {duration(elapsed * (1 - report.fraction) / report.fraction)} left"
+            left = f" · about {remaining(elapsed * (1 - report.fraction) / report.fraction)} left"
         self.status.setText(f"{self._counts()}{left}")
         self._show_state()
 
@@ -335,10 +336,3 @@ class SweepsDock(FramedDock):
 def setting(sweep: Sweep, index: int) -> str:
     """Return what is varied in a cell, in words."""
     return ", ".join(f"{name.replace('_', ' ')} {show(value)}" for name, value in sweep.values(index).items())
-
-
-def duration(seconds: float) -> str:
-    """Return a time for people."""
-    if seconds < 10:
-        return f"{seconds:.1f} s"
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from texlab.durations import duration, remaining
 from texlab.views.image_pane import ImagePane
 from texlab.views.status_line import SEPARATOR, StatusLine, strut
 from texlab.widgets.short_box import ShortBox
@@ -236,10 +237,10 @@ def status_parts(scene: ColumnScene) -> list[str]:
         parts.append(scene.message)
     if scene.status == "running" and scene.elapsed_s > 1.0 and 0.02 < scene.fraction < 1:
         left = scene.elapsed_s * (1 - scene.fraction) / scene.fraction
-        parts.append(f"about {left:.0f} s left" if left >= 1 else "almost done")
+        parts.append(f"about {remaining(left)} left" if left >= 1 else "almost done")
     if scene.status == "finished" and scene.result is not None:
         height, width = scene.result.image.shape[:2]
-        parts += [f"{width} x {height}", format_seconds(scene.elapsed_s)]
+        parts += [f"{width} x {height}", duration(scene.elapsed_s)]
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
         numbers = {**scene.result.measures, **scene.metrics}
@@ -264,13 +265,6 @@ def format_measure(name: str, value: float) -> str:
     """Return a measure as it is shown under a column."""
     title, shape = _MEASURES[name]
     return f"{title} {shape.format(value)}"
-
-
-def format_seconds(seconds: float) -> str:
-    """Return a duration as it is shown."""
-    return (
-        f"{seconds * 1000:.0f} ms" if seconds < 0.1 else f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.0f} s"
-    )
 
 
 def _polish(widget: QWidget) -> None:

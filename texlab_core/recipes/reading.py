@@ -53,6 +53,8 @@ def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
     path = Path(source)
     name = path.name
     try:
+        if path.is_dir():
+            raise RecipeError(f"{source}: is a folder, not a saved result.")
         if not path.is_file():
             raise RecipeError(f"{source}: there is no such file.")
         with open(path, "rb") as file:
