@@ -93,7 +93,8 @@ class Explorer(QObject):
     def start(self, source: str | None, *, columns: Sequence[tuple[Any, ...]] | None = None) -> None:
         """Fill the window: the given image, or the last session, or the first texture."""
         saved = self.settings.values.get("session")
-        chosen = columns or columns_from_json(saved) or first_columns()
+        tell = partial(self.window.message_bar.tell, kind="problem")
+        chosen = columns or columns_from_json(saved, tell) or first_columns()
         seed, size = seed_and_size(saved)
         made = tuple(Column(place + 1, *each) for place, each in enumerate(chosen))
         self.session.apply(State(None, made, seed, size, len(made) + 1), "start")

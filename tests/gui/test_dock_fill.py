@@ -238,7 +238,6 @@ def test_a_damaged_mask_is_left_out_and_said(
     filled: tuple[Explorer, int],
     open_window: Callable[..., Explorer],
     texlab_home: Path,
-    caplog: pytest.LogCaptureFixture,
     damage: str,
 ) -> None:
     explorer, _ = filled
@@ -256,7 +255,9 @@ def test_a_damaged_mask_is_left_out_and_said(
     again = open_window(None)
     back = again.session.state.columns[1]
     assert back.inputs == ()
-    assert "The mask of Efros-Leung could not be brought back; the column starts without it." in caplog.text
+    bar = again.window.message_bar
+    assert bar.isVisible()
+    assert bar.label.text() == "The mask of Efros-Leung could not be brought back; the column starts without it."
 
 
 def test_inputs_beyond_the_limit_are_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

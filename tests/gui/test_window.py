@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
 
 from tests.gui.conftest import drag, handle_point, hb, ids, result_image, wait_idle
 from texlab_core.images import as_exemplar
+from texlab_core.registry import methods
 from texlab_core.run import Job, run
 
 if TYPE_CHECKING:
@@ -487,3 +488,20 @@ def test_tuning_brings_the_threshold_table_to_the_front(
         qtbot.waitUntil(lambda shown=shown: not shown.visibleRegion().isEmpty(), timeout=5_000)
     explorer.window.actions_by_name["layout-explore"].trigger()
     wait_idle(qtbot, explorer)
+
+
+@pytest.mark.parametrize("size", [(4, 1024), (1024, 4), (20, 1024), (300, 200)])
+def test_fit_shows_thin_pictures_too(qtbot: Any, open_window: Any, texture: Path, size: tuple[int, int]) -> None:
+    explorer = open_window(str(texture), [("tiling", methods()["tiling"].params())])
+    explorer.session.set_size(size)
+    wait_idle(qtbot, explorer)
+    (column_id,) = ids(explorer)
+    pane, exemplar = explorer.workspace.columns[column_id].pane, explorer.workspace.exemplar.pane
+    thin = min(size)
+    for each in (pane, exemplar):
+        scale = each.shown_scale
+        assert scale * thin >= min(8, thin) - 1e-6
+        # Not more than is needed, and whole where that is possible.
+        whole = scale * size[0] <= each.height() + 1 and scale * size[1] <= each.width() + 1
+        assert whole or scale * thin == pytest.approx(min(8, thin))
+        assert each.view_rect().contains(QPointF(1, 1))

@@ -6,6 +6,9 @@ from typing import Protocol
 
 from PySide6.QtCore import QPointF, QRectF
 
+# What is thinner on the screen, in pixels, is enlarged to this, or to its own size.
+LEAST = 8
+
 
 class Linked(Protocol):
     """A pane that can follow others."""
@@ -41,13 +44,15 @@ class ViewLink:
     """One place that every pane shows.
 
     ``setXLink`` before the first image breaks the automatic range, so the panes are told instead. As long as the
-    user has not moved or zoomed, the largest picture is shown whole; afterwards the panes keep centre and scale
-    when they are resized, and new ones take them over.
+    user has not moved or zoomed, the largest picture is shown whole, or from its corner where another one would be
+    too thin to be seen; afterwards the panes keep centre and scale when they are resized, and new ones take them
+    over.
     """
 
     def __init__(self) -> None:
         self._panes: list[Linked] = []
         self._extent = (1, 1)
+        self._thinnest = 0
         self._centre = QPointF()
         self._scale: float | None = None
 
@@ -67,10 +72,13 @@ class ViewLink:
             if pane is not source:
                 pane.show_around(self._centre, self._scale)
 
-    def set_extent(self, height: int, width: int) -> None:
-        """Say how large the largest picture is or will be (a draft may be smaller for a moment)."""
-        if (height, width) != self._extent:
-            self._extent = (height, width)
+    def set_extent(self, height: int, width: int, thinnest: int = 0) -> None:
+        """Say how large the largest picture is or will be (a draft may be smaller for a moment).
+
+        ``thinnest`` is the shortest side of any picture, where that may be much less.
+        """
+        if (height, width, thinnest) != (*self._extent, self._thinnest):
+            self._extent, self._thinnest = (height, width), thinnest
             if self._scale is None:
                 self.fit()
 
@@ -89,6 +97,19 @@ class ViewLink:
         rectangle = QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
         for pane in self._panes:
             pane.show_rect(rectangle)
+            if pane.shown_scale * self._thinnest < min(LEAST, self._thinnest):
+                self._show_corner(pane, rectangle, min(1.0, LEAST / self._thinnest))
+
+    @staticmethod
+    def _show_corner(pane: Linked, rectangle: QRectF, scale: float) -> None:
+        """Show as much of a rectangle as there is room for at a scale, from its top left corner."""
+        shown = pane.view_rect()
+        room = pane.shown_scale / scale
+        width, height = (
+            min(rectangle.width(), room * shown.width()),
+            min(rectangle.height(), room * shown.height()),
+        )
+        pane.show_around(QPointF(width / 2, height / 2), scale)
 
     def actual_size(self) -> None:
         """Show one image pixel per screen pixel around the present centre."""
