@@ -63,9 +63,9 @@ class Workspace(QScrollArea):
             view.pane.detach()
             view.setParent(None)
             view.deleteLater()
-        for column in scene.columns:
-            if column.id not in self.columns:
-                self._add(column.id)
+        added = [column_id for column_id in wanted if column_id not in self.columns]
+        for column_id in added:
+            self._add(column_id)
         order = tuple(wanted)
         if order != self._order:
             self._order = order
@@ -81,8 +81,8 @@ class Workspace(QScrollArea):
         if scene.selected_id != self._chosen:
             self._chosen = scene.selected_id
             chosen = self.columns.get(self._chosen)
-            # What is clicked stays under the pointer.
-            if chosen is not None and not chosen.underMouse():
+            # What is clicked stays under the pointer; a new column may have come there by chance.
+            if chosen is not None and (self._chosen in added or not chosen.underMouse()):
                 self.reveal(self._chosen)
 
     def _add(self, column_id: int) -> None:
