@@ -155,8 +155,11 @@ class NumberKnob(KnobWidget):
             self._rest.start()
 
     def settle(self) -> None:
-        """Emit as final what was changed by keys or the wheel a moment ago."""
-        if self._rest.isActive():
+        """Emit as final what was typed or changed by keys or the wheel a moment ago; end a drag."""
+        self.box.interpretText()
+        if self.slider.isSliderDown():
+            self.slider.setSliderDown(False)
+        elif self._rest.isActive():
             self._settled()
 
     def _settled(self) -> None:

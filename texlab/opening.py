@@ -107,12 +107,19 @@ def open_source(source: str | bytes | Kept) -> Opened:
 
 def sample_of(image: ImageInput, path: str | None) -> Sample:
     """Return the sample for an image: a photograph is scaled to a comfortable size at first."""
+    sample = sample_as_used(image, path)
+    side = max(image.size)
+    if sample.source is not image or side <= COMFORTABLE_SIDE:
+        return sample
+    return dataclasses.replace(sample, scale=round(COMFORTABLE_SIDE / side, 3))
+
+
+def sample_as_used(image: ImageInput, path: str | None = None) -> Sample:
+    """Return the sample whose exemplar is this image, pixel by pixel."""
     if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):
         whole = ImageInput(image.origin.pixels, image.name, image.sha256 + ":source", None, image.notes)
         return Sample(whole, image.origin.scale, image.origin.crop, path)
-    side = max(image.size)
-    scale = 1.0 if side <= COMFORTABLE_SIDE else round(COMFORTABLE_SIDE / side, 3)
-    return Sample(image, scale, None, path)
+    return Sample(image, 1.0, None, path)
 
 
 def fitting(sample: Sample) -> Sample:
@@ -169,10 +176,10 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     job = opened.job
     assert job is not None
     extra = tuple((name, value) for name, value in job.inputs.items() if name != "exemplar")
-    state = dataclasses.replace(state, sample=sample_of(opened.image, None), seed=job.seed, size=job.size)
+    state = dataclasses.replace(state, sample=sample_as_used(opened.image), seed=job.seed, size=job.size)
     for column in state.columns:
         if column.method == job.method:
-            changed = dataclasses.replace(column, params=job.params, inputs=extra)
+            changed = dataclasses.replace(column, params=job.params, inputs=extra, size=None)
             return state.with_column(changed), column.id
     added = Column(state.next_id, job.method, job.params, extra)
     return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id

@@ -212,9 +212,9 @@ class Session(QObject):
         self.apply(dataclasses.replace(self.state, size=size), f"size {size[1]} x {size[0]}", merge=merge)
 
     def set_params(self, column_id: int, params: Params, text: str, *, merge: object | None = None) -> None:
-        """Set a column's parameters."""
+        """Set a column's parameters; what belongs to another method is none of its business."""
         column = self.state.column(column_id)
-        if column is not None:
+        if column is not None and type(params) is type(column.params):
             changed = dataclasses.replace(column, params=params)
             self.apply(self.state.with_column(changed), text, merge=merge)
 

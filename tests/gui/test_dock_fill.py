@@ -175,6 +175,23 @@ def test_a_loaded_mask_of_the_wrong_size_changes_nothing(
     wait_idle(qtbot, explorer)
 
 
+def test_a_mask_that_comes_after_another_picture_changes_nothing(
+    qtbot: Any, filling: tuple[Explorer, FillDock], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    explorer, dock = filling
+    Image.fromarray(np.full((40, 48), 255, np.uint8)).save(tmp_path / "mask.png")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *args, **more: (str(tmp_path / "mask.png"), ""))
+    dock._load()
+    # The file is being read.
+    dock.canvas.show_image(np.zeros((30, 20, 3), np.uint8))
+    bar = explorer.window.message_bar
+    qtbot.waitUntil(bar.isVisible, timeout=10_000)
+    assert "another picture" in bar.label.text() or "20 x 30" in bar.label.text()
+    assert dock.canvas.mask.shape == (30, 20)
+    assert not dock.canvas.mask.any()
+    wait_idle(qtbot, explorer)
+
+
 def test_a_picture_grows_outward(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
     explorer, dock = filling
     explorer.session.set_size((56, 60))

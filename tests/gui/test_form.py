@@ -489,6 +489,50 @@ def test_keys_are_settled_for_their_own_column(qtbot):
     assert view.form.params.rounds == 30
 
 
+@pytest.mark.parametrize("following", [STUB_METHOD, methods()["msg"], None])
+def test_what_was_begun_stays_with_its_own_column(qtbot, following):
+    view = shown(qtbot, ParametersView())
+    heard = []
+    view.edited.connect(lambda *args: heard.append(args))
+    params = None if following is None else following.params()
+    view.show_column(1, STUB_METHOD, EveryParams())
+    knob = view.form.knobs["rounds"]
+    knob.box.setFocus()
+    knob.box.selectAll()
+    # Typed, but not entered.
+    QTest.keyClicks(knob.box, "7")
+    view.show_column(2, following, params)
+    QApplication.processEvents()
+    assert heard == [(1, EveryParams(rounds=7), "rounds", True)]
+    heard.clear()
+    view.show_column(1, STUB_METHOD, EveryParams())
+    slider = view.form.knobs["rounds"].slider
+    qtbot.mousePress(slider, LEFT, pos=handle_point(slider))
+    move(qtbot, slider, handle_point(slider, 0.6))
+    view.show_column(2, following, params)
+    QApplication.processEvents()
+    dragged = heard[0][1]
+    assert dragged.rounds > 5
+    # The drag has ended there, or the column would keep its draft.
+    assert heard == [(1, dragged, "rounds", False), (1, dragged, "rounds", True)]
+
+
+def test_a_form_that_is_gone_tells_nothing(qtbot):
+    view = shown(qtbot, ParametersView())
+    heard = []
+    view.edited.connect(lambda *args: heard.append(args))
+    view.show_column(1, STUB_METHOD, EveryParams())
+    knob = view.form.knobs["rounds"]
+    knob.box.setFocus()
+    knob.box.selectAll()
+    QTest.keyClicks(knob.box, "7")
+    # Another method in the same column: what is typed is no parameter of it.
+    view.show_column(1, methods()["msg"], methods()["msg"].params())
+    knob.edited.emit(9, True)
+    QApplication.processEvents()
+    assert heard == []
+
+
 def test_another_column_of_the_same_method_keeps_the_form(qtbot):
     view = shown(qtbot, ParametersView())
     view.show_column(1, STUB_METHOD, EveryParams())

@@ -12,7 +12,11 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
+from texlab.opening import open_source, restored
+from texlab.preparation import prepare
+from texlab.session import Column, Session, State
 from texlab_core.images import as_exemplar
+from texlab_core.record import save_result
 from texlab_core.registry import methods
 from texlab_core.run import Job, run
 from texlab_core.spectral.codefile import load_code_input, write_code
@@ -147,6 +151,29 @@ def test_bad_documents_get_one_sentence_and_change_nothing(
     assert sentence in told
     assert "Traceback" not in told
     assert explorer.session.state == before
+
+
+@pytest.mark.parametrize(("shape", "scale"), [((300, 280, 1), 1.0), ((520, 600, 1), 0.5), ((64, 60, 3), 1.0)])
+def test_a_restored_result_has_the_exemplar_and_the_size_that_made_it(
+    tmp_path: Path, shape: tuple[int, ...], scale: float
+) -> None:
+    exemplar = as_exemplar(np.random.default_rng(4).random(shape, np.float32), scale=scale)
+    job = Job(method="msg", inputs={"exemplar": exemplar}, size=(24, 28))
+    save_result(run(job), tmp_path / "made.png")
+    # A column that has filled something has a size of its own.
+    filled = Column(1, "msg", job.params, (), (40, 50))
+    state, column_id = restored(State(columns=(filled,)), open_source(str(tmp_path / "made.png")))
+    assert column_id == 1
+    assert prepare(state.sample, None).exemplar.sha256 == exemplar.sha256
+    assert (state.column(1).size or state.size) == (24, 28)
+
+
+def test_parameters_of_another_method_are_not_taken() -> None:
+    session = Session()
+    session.add_column("msg", methods()["msg"].params())
+    before = session.state
+    session.set_params(1, methods()["heeger-bergen"].params(), "late")
+    assert session.state is before
 
 
 def test_a_dock_can_have_a_texture_opened(qtbot: Any, explorer: Explorer) -> None:

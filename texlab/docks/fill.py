@@ -163,7 +163,13 @@ class FillDock(FramedDock):
             canvas = self.canvas
 
             def act(controller: Controller) -> None:
-                controller.once("mask", lambda task: read_mask(path, canvas.mask.shape), canvas.set_mask)
+                def done(mask: NDArray[np.bool_]) -> None:
+                    if mask.shape == canvas.mask.shape:
+                        canvas.set_mask(mask)
+                    else:
+                        controller.problem.emit("The mask was read for another picture; load it again.")
+
+                controller.once("mask", lambda task: read_mask(path, canvas.mask.shape), done)
 
             self.intention.emit(act)
 

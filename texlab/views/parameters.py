@@ -93,10 +93,13 @@ class ParametersView(QWidget):
             self.form.set_context(scene)
 
     def _set_form(self, form: ParameterForm | None) -> None:
+        if self.form is not None:
+            # What is typed in it would be told, as the next column's, when it is hidden.
+            self.form.edited.disconnect()
+        self.form = form
         old = self.scroll_area.takeWidget()
         if old is not None:
             old.deleteLater()
-        self.form = form
         # Without anything in it, the area would keep the scroll bar of what it had.
         self.scroll_area.setWidget(form or QWidget())
         if form is not None:
