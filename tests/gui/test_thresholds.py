@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from dock_scenes import check_controls, feed, shown
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QKeySequence
 
-from tests.gui.conftest import drag, wait_idle
+from tests.gui.conftest import drag, move, wait_idle
 from texlab.docks.thresholds import ThresholdsDock
 from texlab.form import ParameterForm
+from texlab.session import Session
 from texlab.theme import DARK, LIGHT
 from texlab.thresholds import knob
 from texlab.thresholds.distance_view import SCALE, Distances
@@ -287,6 +289,44 @@ def test_locks_belong_to_the_column(hand):
     assert not hand.editor.locked
     hand.feed()
     assert hand.editor.locked
+
+
+@pytest.mark.parametrize("following", ["another table", "no table"])
+@pytest.mark.parametrize("begun", ["keys", "drag", "keys of the line", "line"])
+def test_what_was_begun_stays_with_its_own_column(hand, qtbot, begun, following):
+    view = hand.dock.distances
+    hand.feed()
+    if begun == "keys":
+        hand.key(Qt.Key.Key_Plus)
+    elif begun == "drag":
+        qtbot.mousePress(hand.editor, LEFT, pos=hand.at(1, 1))
+        move(qtbot, hand.editor, hand.at(1, 1) - QPoint(0, 30))
+    elif begun == "keys of the line":
+        qtbot.keyClick(view, Qt.Key.Key_Right)
+    else:
+        qtbot.mousePress(view, LEFT, pos=QPoint(round(view.line_x()), 20))
+        move(qtbot, view, QPoint(round(view.line_x()) + 30, 20))
+    begun_table = hand.edits[-1][0]
+    assert not any(final for _, final in hand.edits)
+    hand.edits.clear()
+    told = []
+    hand.dock.intention.connect(told.append)
+    other = finished(column_id=2)
+    if following == "no table":
+        other = dataclasses.replace(other, method="msg", params=methods()["msg"].params())
+    hand.dock.question(scene(other))
+    assert hand.edits == [(begun_table, True)]
+    # What follows of the hand's movement is no edit of the other column.
+    assert not hand.editor.busy
+    assert not view.busy
+    if following == "another table":
+        assert hand.editor.view.table == other.params.thresholds
+    session = Session()
+    for _ in range(2):
+        session.add_column("de-bonet", hand.column.params)
+    edited = []
+    told[0](SimpleNamespace(session=session, edit_params=lambda *args: edited.append(args)))
+    assert [(args[0], args[3]) for args in edited] == [(hand.column.id, True)]
 
 
 def test_reset_of_a_cell_a_row_and_everything(hand):

@@ -126,6 +126,8 @@ class ThresholdsDock(FramedDock):
     def question(self, scene: Scene) -> Question | None:
         """Show the table of the chosen column at once; ask for the distances of the chosen cell."""
         column = scene.selected
+        if self._column is not None and (column is None or column.id != self._column.id):
+            self._settle()
         field = table_field(column.params) if column is not None else None
         if column is None or field is None:
             self.why = "" if column is None else f"{column.title} has no threshold table."
@@ -187,6 +189,12 @@ class ThresholdsDock(FramedDock):
         self.ask()
 
     # What the user does.
+
+    def _settle(self) -> None:
+        """End what goes on before another column is shown: it was meant for this one."""
+        if self.distances.busy:
+            self.distances.settle()
+        self.editor.settle()
 
     def _edit(self, table: ThresholdTable, final: bool) -> None:
         if self._column is None:

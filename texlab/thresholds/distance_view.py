@@ -86,7 +86,7 @@ class DistanceView(QWidget):
         self._settle = QTimer(self)
         self._settle.setSingleShot(True)
         self._settle.setInterval(SETTLE_MS)
-        self._settle.timeout.connect(lambda: self.edited.emit(self._threshold, True))
+        self._settle.timeout.connect(self.settle)
 
     @property
     def threshold(self) -> float:
@@ -132,6 +132,17 @@ class DistanceView(QWidget):
 
     # Editing.
 
+    def settle(self) -> None:
+        """End what goes on, a drag or keys: it is told as final."""
+        self._dragging = False
+        self._settle.stop()
+        self.edited.emit(self._threshold, True)
+
+    @property
+    def busy(self) -> bool:
+        """Whether an edit is under way."""
+        return self._dragging or self._settle.isActive()
+
     def _drag_to(self, x: float) -> None:
         area = self._area()
         value = rounded(SCALE.value((x - area.left()) / area.width()))
@@ -157,8 +168,7 @@ class DistanceView(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let the line go: the drag is one step."""
         if self._dragging:
-            self._dragging = False
-            self.edited.emit(self._threshold, True)
+            self.settle()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move the line."""

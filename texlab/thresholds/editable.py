@@ -169,6 +169,12 @@ class EditableTable(TableMap):
         if differs or final:
             self.edited.emit(table, final)
 
+    def settle(self) -> None:
+        """End what goes on: it is told as final."""
+        self.close_entry()
+        if self.busy:
+            self._settled()
+
     def _settled(self) -> None:
         if self._view is not None:
             self.take(self._view.table, final=True)

@@ -96,6 +96,11 @@ class TableEditor(EditableTable):
         """Whether the mouse paints the paint value."""
         return self._painting
 
+    def settle(self) -> None:
+        """End what goes on, a drag too: it is told as final."""
+        super().settle()
+        self._drag = None
+
     def set_painting(self, on: bool) -> None:
         """Paint with the mouse, or drag."""
         if on != self._painting:
