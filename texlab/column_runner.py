@@ -56,6 +56,8 @@ class ColumnRunner(QObject):
         self._live = False
         self._run: ColumnRun | None = None
         self._kept: Keep | None = None
+        # Method and exemplar of the newest job.
+        self._origin: tuple[str, str] | None = None
         self.worker = Worker(f"column-{column.id}", shared.slots, self)
         self.worker.started.connect(lambda _: self._started())
         self.worker.progressed.connect(self._progressed)
@@ -97,6 +99,10 @@ class ColumnRunner(QObject):
         method = find_method(column.method)
         full = column.size or state.size
         self._full = state.size
+        origin = method.id, exemplar.sha256
+        if origin != self._origin:
+            # Where another method stood, or the same on another exemplar, is no place to go on from.
+            self._origin, self._kept = origin, None
         # What is filled keeps its size: a smaller start image would be another job.
         size = draft_size(full, self.seconds) if draft and column.size is None else None
         own_draft = size is not None and method.draft is not None

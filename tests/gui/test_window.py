@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -474,6 +475,37 @@ def test_efros_leung_goes_on_after_a_stop_and_after_enlarging(
     grown = result_image(explorer, column.id)
     assert grown.shape == (170, 170, 3)
     assert np.array_equal(grown[10:160, 10:160], whole)
+
+
+@pytest.mark.parametrize("other", ["method", "exemplar"])
+def test_nothing_goes_on_from_where_something_else_stood(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path, other: str
+) -> None:
+    explorer = open_window(str(texture), [("efros-leung", texlab_params("efros-leung").replace(window=7))])
+    controller, (column_id,) = explorer.controller, ids(explorer)
+    assert controller.column_scene(column_id).resumable
+    # Every place is taken: what is asked for next does not begin.
+    places = os.cpu_count() or 1
+    for _ in range(places):
+        assert controller.slots.acquire(lambda: False)
+    if other == "method":
+        explorer.handlers.choose_method(column_id, "heeger-bergen")
+    else:
+        explorer.opener.open("gallery:oriented-zebra")
+        qtbot.waitUntil(lambda: not controller._errands.busy and not controller._preparation.busy)
+    assert controller.column_scene(column_id).status == "waiting"
+    controller.stop_all()
+    for _ in range(places):
+        controller.slots.release()
+    assert controller.column_scene(column_id).status == "cancelled"
+    assert not controller.column_scene(column_id).resumable
+    wait_idle(qtbot, explorer)
+
+
+def test_many_columns_come_back(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> None:
+    explorer = open_window(str(texture), [("pixels", texlab_params("pixels"))] * 14)
+    explorer.close()
+    assert len(ids(open_window(None))) == 14
 
 
 def test_tuning_brings_the_threshold_table_to_the_front(

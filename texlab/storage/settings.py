@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 MAX_RECENT = 10
-MAX_COLUMNS = 12
+# More than anybody lays side by side; a damaged file must not start thousands.
+MAX_COLUMNS = 100
 
 
 class Settings:
