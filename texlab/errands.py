@@ -11,6 +11,9 @@ from texlab.jobs import Request, Worker
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+# The window is gone by then, and a large result that is being written is worth waiting for.
+PATIENCE_S = 60.0
+
 
 class Errands(QObject):
     """Each errand has a thread of its own; ``failed(sentence)`` for one that fails, ``idle()`` after the last."""
@@ -61,5 +64,5 @@ class Errands(QObject):
     def close(self) -> None:
         """Stop and join every thread."""
         for worker in self._workers:
-            worker.close()
+            worker.close(PATIENCE_S)
         self._workers.clear()

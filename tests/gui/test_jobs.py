@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import shiboken6
 
+from texlab.errands import Errands
 from texlab.jobs import Task, Worker
 from texlab.slots import Rank, Slots
 from texlab_core.errors import Cancelled, InputError
@@ -300,3 +301,21 @@ def test_a_thread_that_could_not_be_stopped_in_time_ends_quietly(qapp: Any, capl
     hold.set()
     thread.join(60)
     assert not thread.is_alive()
+
+
+def test_what_is_being_written_is_waited_for(qapp: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Worker.close, "__defaults__", (0.01,))
+    begun, go_on = threading.Event(), threading.Event()
+    written: list[str] = []
+
+    def write(task: Task) -> None:
+        begun.set()
+        assert go_on.wait(60)
+        written.append("all of it")
+
+    errands = Errands()
+    errands.run("save", write)
+    assert begun.wait(60)
+    threading.Timer(0.2, go_on.set).start()
+    errands.close()
+    assert written == ["all of it"]
