@@ -40,7 +40,8 @@ def execute(args: argparse.Namespace) -> int:
 
         args.gallery = find_entry(args.gallery).name
     require_qt()
-    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    # An empty value is no choice of a platform either.
+    os.environ["QT_QPA_PLATFORM"] = os.environ.get("QT_QPA_PLATFORM") or "offscreen"
     # This platform warns of window hints that it has no use for.
     os.environ.setdefault("QT_LOGGING_RULES", "default.warning=false")
     from texlab.app import screenshot
