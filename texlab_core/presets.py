@@ -162,19 +162,9 @@ def preset_from_json(data: object, *, what: str = "the preset") -> Preset:
         raise PresetError(f"{what[:1].upper()}{what[1:]} cannot be used: {bad}") from bad
 
 
-def _from_json(data: object) -> Preset:
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise PresetError(f'it is no preset (a JSON object with "format": "{FORMAT}" was expected).')
-    version = data.get("version")
-    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
-        raise PresetError(f"version: must be a whole number from 1, got {strict_json.shorten(version)}.")
-    if version > VERSION:
-        raise PresetError(
-            f"it has version {version}, made by a newer TexLab, and only version {VERSION} is known."
-        )
-    for key in data:
-        if key not in _KEYS:
-            raise PresetError(f"key: must be one of {', '.join(_KEYS)}, got {strict_json.shorten(key)}.")
+def _from_json(given: object) -> Preset:
+    data = strict_json.check_document(given, "preset", form=FORMAT, version=VERSION, error=PresetError)
+    strict_json.check_keys(data, _KEYS, PresetError)
     for key in ("name", "method", "parameters"):
         if key not in data:
             raise PresetError(f"{key}: is missing.")

@@ -13,6 +13,7 @@ from texlab_core.wording import sentence_case
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Mapping, Sequence
 
 MAX_BYTES = 2**20
 MAX_DEPTH = 32
@@ -160,6 +161,39 @@ def _whole(digits: str) -> int:
     if len(digits) > _MAX_DIGITS:
         raise _Refused(f"holds the number {shorten(digits)}, which is too large or too long")
     return int(digits)
+
+
+def check_document(
+    data: object, noun: str, *, form: str, version: int, error: type[InputError] = InputError
+) -> dict[str, Any]:
+    """Return a document that names its format and a known version.
+
+    Parameters
+    ----------
+    data
+        What was read.
+    noun
+        What it should be ("preset").
+    form, version
+        Its ``format``, and the newest version that is known.
+    error
+        Raised with one clause when it is something else or newer.
+    """
+    if not isinstance(data, dict) or data.get("format") != form:
+        raise error(f'it is no {noun} (a JSON object with "format": "{form}" was expected).')
+    given = data.get("version")
+    if type(given) is not int or given < 1:
+        raise error(f"version: must be a whole number from 1, got {shorten(given)}.")
+    if given > version:
+        raise error(f"it has version {given}, made by a newer TexLab, and only version {version} is known.")
+    return data
+
+
+def check_keys(data: Mapping[str, object], known: Sequence[str], error: type[InputError] = InputError) -> None:
+    """Refuse keys that are not known."""
+    for key in data:
+        if key not in known:
+            raise error(f"key: must be one of {', '.join(known)}, got {shorten(key)}.")
 
 
 def shorten(given: object) -> str:

@@ -188,19 +188,9 @@ def sweep_recipe_from_json(data: object, *, what: str = "the sweep") -> SweepRec
         raise RecipeError(f"{what[:1].upper()}{what[1:]} cannot be used: {bad}") from bad
 
 
-def _from_json(data: object) -> SweepRecipe:
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise RecipeError(f'it is no sweep (a JSON object with "format": "{FORMAT}" was expected).')
-    version = data.get("version")
-    if type(version) is not int or version < 1:
-        raise RecipeError(f"version: must be a whole number from 1, got {strict_json.shorten(version)}.")
-    if version > VERSION:
-        raise RecipeError(
-            f"it has version {version}, made by a newer TexLab, and only version {VERSION} is known."
-        )
-    for key in data:
-        if key not in _KEYS:
-            raise RecipeError(f"key: must be one of {', '.join(_KEYS)}, got {strict_json.shorten(key)}.")
+def _from_json(given: object) -> SweepRecipe:
+    data = strict_json.check_document(given, "sweep", form=FORMAT, version=VERSION, error=RecipeError)
+    strict_json.check_keys(data, _KEYS, RecipeError)
     method = find_method(_typed(data, "method", str))
     parameters = _typed(data, "parameters", dict, {})
     complete = method.params.from_json(parameters).to_json()

@@ -125,14 +125,8 @@ def load_code_input(path: Path) -> DataInput:
     return code_input(read_code(path).code, path.name)
 
 
-def _from_json(data: object) -> CodeFile:
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise CodeError(f'it is no MSG code (a JSON object with "format": "{FORMAT}" was expected).')
-    version = data.get("version")
-    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
-        _refuse("version", "a whole number from 1", version)
-    if version > VERSION:
-        raise CodeError(f"it has version {version}, made by a newer TexLab, and only version {VERSION} is known.")
+def _from_json(given: object) -> CodeFile:
+    data = strict_json.check_document(given, "MSG code", form=FORMAT, version=VERSION, error=CodeError)
     _check_keys("key", data, _KEYS, _OPTIONAL)
     exemplar = data.get("exemplar", "")
     if not isinstance(exemplar, str) or len(exemplar) > MAX_NAME or not (exemplar.isprintable()):
@@ -228,7 +222,7 @@ def _word(name: str, data: object, words: Sequence[str]) -> str:
     return data
 
 
-def _check_keys(name: str, data: Mapping[object, object], known: Sequence[str], optional: Sequence[str]) -> None:
+def _check_keys(name: str, data: Mapping[Any, object], known: Sequence[str], optional: Sequence[str]) -> None:
     for key in data:
         if key not in known:
             _refuse(name, f"one of {', '.join(known)}", key)
