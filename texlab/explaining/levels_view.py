@@ -16,7 +16,7 @@ from texlab.views.image_pane import MARK_COLOURS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtCore import QEvent
-    from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent
+    from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent
 
     from texlab.scene import Picture
     from texlab.theme import Theme
@@ -201,16 +201,6 @@ class LevelsView(QWidget):
         """Scale the pictures anew."""
         super().resizeEvent(event)
         self._scaled.clear()
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        """Show the focus at the selected tile."""
-        super().focusInEvent(event)
-        self.update()
-
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Show the focus at the selected tile."""
-        super().focusOutEvent(event)
-        self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the levels, and the places over them."""

@@ -17,7 +17,7 @@ from texlab_core.multiresolution.distances import feature_distances, passing_sha
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from PySide6.QtGui import QFocusEvent, QPaintEvent
+    from PySide6.QtGui import QPaintEvent
 
     from texlab.theme import Theme
     from texlab_core.multiresolution.analysis import Analysis
@@ -183,16 +183,6 @@ class DistanceView(QWidget):
             self.update()
             self.edited.emit(value, False)
         self._settle.start()
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        """Show the focus."""
-        super().focusInEvent(event)
-        self.update()
-
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Show the focus."""
-        super().focusOutEvent(event)
-        self.update()
 
     # Painting.
 

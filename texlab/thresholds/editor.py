@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from PySide6.QtCore import QObject
-    from PySide6.QtGui import QFocusEvent
 
     from texlab_core.multiresolution.thresholds import Cell, ThresholdTable
 
@@ -269,16 +268,6 @@ class TableEditor(EditableTable):
                 self._move(*ARROWS[key], extend=False)
                 return True
         return super().eventFilter(watched, event)
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        """Show the focus at the selection."""
-        super().focusInEvent(event)
-        self.update()
-
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Show the focus at the selection."""
-        super().focusOutEvent(event)
-        self.update()
 
 
 def _starts_number(text: str) -> bool:

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from PySide6.QtGui import (
-        QFocusEvent,
         QFontMetrics,
         QKeyEvent,
         QMouseEvent,
@@ -378,16 +377,6 @@ class _Canvas(QWidget):
             self._view.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
         else:
             super().keyPressEvent(event)
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        """Show which cell is the current one."""
-        super().focusInEvent(event)
-        self.update()
-
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Hide which cell is the current one."""
-        super().focusOutEvent(event)
-        self.update()
 
     def event(self, event: QEvent) -> bool:
         """Show the whole text of a cell as its tooltip."""
