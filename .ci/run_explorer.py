@@ -13,7 +13,7 @@ SAMPLE = "gallery:structured-pebbles"
 
 def main() -> int:
     """Return the exit code."""
-    from texlab.cli import main as texlab
+    from texlab.cli.main import main as texlab
 
     if has_display():
         return texlab([])

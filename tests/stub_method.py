@@ -11,12 +11,12 @@ from typing import Annotated, Literal
 import numpy as np
 import pytest
 
-from texlab_core import registry
+from texlab_core.engine import registry
+from texlab_core.engine.inputs import ImageInput, exemplar_of, hash_arrays
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import Method
+from texlab_core.engine.steps import Map, Output, Step
 from texlab_core.errors import InputError
-from texlab_core.inputs import ImageInput, exemplar_of, hash_arrays
-from texlab_core.params import Knob, Params
-from texlab_core.registry import Method
-from texlab_core.steps import Map, Output, Step
 
 
 @dataclass(frozen=True, kw_only=True)

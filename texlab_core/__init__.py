@@ -11,29 +11,29 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from texlab_core.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from texlab_core.api import available_methods, synthesize
+    from texlab_core.documents.record import read_recipe, save_result
+    from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput
+    from texlab_core.engine.params import Knob, Params, describe
+    from texlab_core.engine.registry import InputSpec, Method, find_method, register
+    from texlab_core.engine.run import AnalysisCache, Job, Streams
+    from texlab_core.engine.steps import Curve, Map, Output, Result, Step
     from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
-    from texlab_core.images import as_exemplar
-    from texlab_core.inputs import ArraysInput, Crop, DataInput, ImageInput
-    from texlab_core.params import Knob, Params, describe
-    from texlab_core.record import read_recipe, save_result
-    from texlab_core.registry import InputSpec, Method, find_method, register
-    from texlab_core.run import AnalysisCache, Job, Streams
-    from texlab_core.steps import Curve, Map, Output, Result, Step
+    from texlab_core.images.exemplar import as_exemplar
 
 _HOMES = {
     "api": ("available_methods", "synthesize"),
+    "documents.record": ("read_recipe", "save_result"),
+    "engine.inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput"),
+    "engine.params": ("Knob", "Params", "describe"),
+    "engine.registry": ("InputSpec", "Method", "find_method", "register"),
+    "engine.run": ("AnalysisCache", "Job", "Streams"),
+    "engine.steps": ("Curve", "Map", "Output", "Result", "Step"),
     "errors": ("Cancelled", "ImageError", "InputError", "ParamError", "RecipeError"),
-    "images": ("as_exemplar",),
-    "inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput"),
-    "params": ("Knob", "Params", "describe"),
-    "record": ("read_recipe", "save_result"),
-    "registry": ("InputSpec", "Method", "find_method", "register"),
-    "run": ("AnalysisCache", "Job", "Streams"),
-    "steps": ("Curve", "Map", "Output", "Result", "Step"),
+    "images.exemplar": ("as_exemplar",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

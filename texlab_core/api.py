@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from texlab_core.images import as_exemplar
-from texlab_core.registry import find_method, methods
-from texlab_core.run import Job, run
+from texlab_core.engine.registry import find_method, methods
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab_core.images import Source
-    from texlab_core.inputs import Input
-    from texlab_core.registry import Method
-    from texlab_core.steps import Result, Step
+    from texlab_core.engine.inputs import Input
+    from texlab_core.engine.registry import Method
+    from texlab_core.engine.steps import Result, Step
+    from texlab_core.images.exemplar import Source
 
 
 def synthesize(

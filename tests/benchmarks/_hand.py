@@ -84,10 +84,10 @@ class Watch:
 
 
 def open_window(columns: int) -> Any:
-    from texlab import app
+    from texlab.app import start as app
     from texlab.storage.settings import Settings
-    from texlab.theme import ThemeSource
-    from texlab_core.registry import methods
+    from texlab.style.theme import ThemeSource
+    from texlab_core.engine.registry import methods
 
     settings, themes = Settings(), ThemeSource("dark")
     app.application()

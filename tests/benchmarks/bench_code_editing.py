@@ -16,7 +16,7 @@ from tests.benchmarks.clock import fourier_pair
 from texlab_core.warming import every_need
 
 if TYPE_CHECKING:
-    from texlab.docks.code import CodeDock
+    from texlab.docks.spectral.code import CodeDock
 
 pytestmark = pytest.mark.benchmark
 

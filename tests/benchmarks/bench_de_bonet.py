@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from texlab_core.images import as_exemplar
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.run import AnalysisCache, Job, Streams, run
+from texlab_core.engine.run import AnalysisCache, Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.de_bonet.method import DeBonetParams
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.steps import FloatImage
 
 pytestmark = pytest.mark.benchmark
 
@@ -60,10 +60,10 @@ def cartoon(side: int, discs: int, grain: float = 0.0, channels: int = 1) -> Flo
 
 def grown(pixels: FloatImage, alpha: float, side: int) -> Callable[[], object]:
     """Return sampling and collapse, without the analysis and without maps and measures."""
-    from texlab_core.multiresolution.analysis import analyze_steps
-    from texlab_core.multiresolution.generators import finish
-    from texlab_core.multiresolution.growth import grow
-    from texlab_core.multiresolution.sampling import prepare, sample_steps
+    from texlab_core.methods.de_bonet.analysis import analyze_steps
+    from texlab_core.methods.de_bonet.growth import grow
+    from texlab_core.methods.de_bonet.sampling import prepare, sample_steps
+    from texlab_core.work.tasks import finish
 
     analysis = finish(analyze_steps(pixels))
     table = np.full((analysis.depth, len(analysis.features)), alpha, np.float32)
@@ -159,7 +159,7 @@ def test_against_the_compiled_pseudo_code() -> None:
 
 
 def test_explain_a_pixel() -> None:
-    from texlab_core.multiresolution.explain import explain
+    from texlab_core.methods.de_bonet.explain import explain
 
     for name, pixels in (("gravel", GRAY[:256, :256]), ("flat cartoon with grain", cartoon(512, 12, 0.01))):
         sampling = whole(pixels, 0.3, 512)().details.sampling

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.run import AnalysisCache, Job, run
 from texlab_core.errors import Cancelled
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import Crop
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.kernels.jit import njit
-from texlab_core.methods.efros_leung import EfrosLeungParams
-from texlab_core.neighbourhood.draft import draft
-from texlab_core.run import AnalysisCache, Job, run
+from texlab_core.methods.efros_leung.draft import draft
+from texlab_core.methods.efros_leung.method import EfrosLeungParams
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from texlab_core.inputs import ImageInput
-    from texlab_core.steps import Step
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import Step
 
 pytestmark = pytest.mark.benchmark
 

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.clock import cpu, fourier_pair
-from texlab_core.images import as_exemplar
-from texlab_core.methods.heeger_bergen import HeegerBergenParams
-from texlab_core.run import AnalysisCache, Job, run
+from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.heeger_bergen.method import HeegerBergenParams
 
 if TYPE_CHECKING:
-    from texlab_core.inputs import ImageInput
-    from texlab_core.steps import Step
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import Step
 
 pytestmark = pytest.mark.benchmark
 

@@ -21,8 +21,8 @@ START = """
 import os, sys, time
 began = time.perf_counter()
 from PySide6.QtCore import QEvent, QObject, QTimer
-import texlab.app
-from texlab.window import MainWindow
+import texlab.app.start
+from texlab.window.main_window import MainWindow
 
 def report(name):
     print(name, time.perf_counter() - began, flush=True)
@@ -35,7 +35,7 @@ def first_paint(self, event):
         painted.append(1)
         report("painted")
 MainWindow.paintEvent = first_paint
-made = texlab.app.complete
+made = texlab.app.start.complete
 def complete(*arguments):
     explorer = made(*arguments)
     report("complete")
@@ -50,8 +50,8 @@ def complete(*arguments):
     watch.timeout.connect(look)
     watch.start()
     return explorer
-texlab.app.complete = complete
-sys.exit(texlab.app.run_gui(None))
+texlab.app.start.complete = complete
+sys.exit(texlab.app.start.run_gui(None))
 """
 
 
@@ -83,10 +83,10 @@ def test_start(tmp_path: Any) -> None:
 def window(
     qtbot: Any, tmp_path: Any, columns: list[tuple[str, dict[str, Any]]], size: int, source: Any
 ) -> Iterator[Any]:
-    from texlab import app
+    from texlab.app import start as app
     from texlab.storage.settings import Settings
-    from texlab.theme import ThemeSource
-    from texlab_core.registry import methods
+    from texlab.style.theme import ThemeSource
+    from texlab_core.engine.registry import methods
 
     os.environ["TEXLAB_HOME"] = str(tmp_path)
     settings, themes = Settings(), ThemeSource("dark")

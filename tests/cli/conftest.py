@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import pytest
 
-from texlab.cli import main
+from texlab.cli.main import main
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
-from texlab_core.formats.reading import read_image
-from texlab_core.images import as_exemplar
-from texlab_core.registry import methods
-from texlab_core.run import run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.reading import read_image
 from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
 
 if TYPE_CHECKING:

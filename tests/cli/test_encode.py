@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from texlab_core.formats.reading import read_image
-from texlab_core.spectral.codefile import read_code
+from texlab_core.images.formats.reading import read_image
+from texlab_core.methods.spectral.codefile import read_code
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from tests.core.test_efros_leung import texture
-from texlab_core.formats.reading import read_image
-from texlab_core.formats.writing import write_image
-from texlab_core.images import as_exemplar
-from texlab_core.methods.efros_leung import EfrosLeungParams
-from texlab_core.run import Job, run
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.writing import write_image
+from texlab_core.methods.efros_leung.method import EfrosLeungParams
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-import texlab.commands
-from texlab import cli
-from texlab.cli import Parser, find_commands
-from texlab.commands.methods import knobs
-from texlab_core import __version__
+import texlab.cli.commands
+from texlab.cli import main as cli
+from texlab.cli.commands.methods import knobs
+from texlab.cli.main import Parser, find_commands
+from texlab_core.engine.params import describe
+from texlab_core.engine.registry import methods
 from texlab_core.errors import Cancelled, InputError, ParamError
-from texlab_core.params import describe
-from texlab_core.registry import methods
+from texlab_core.version import __version__
 
 if TYPE_CHECKING:
     import argparse
@@ -31,7 +31,9 @@ HEAVY = ("PySide6", "shiboken6", "pyqtgraph", "numba", "scipy", "cv2", "PIL", "r
 
 
 def test_every_file_of_commands_is_a_command() -> None:
-    files = {each.name for each in pkgutil.iter_modules(texlab.commands.__path__) if not each.name.startswith("_")}
+    files = {
+        each.name for each in pkgutil.iter_modules(texlab.cli.commands.__path__) if not each.name.startswith("_")
+    }
     found = find_commands()
     assert set(found) == {name.replace("_", "-") for name in files}
     assert {"gui", "synth", "redo", "methods", "gallery", "screenshot"} <= set(found)
@@ -167,7 +169,7 @@ _DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 )
 def test_asking_imports_nothing_heavy(arguments: list[str]) -> None:
     code = (
-        "import sys\nfrom texlab.cli import main\ncode = main(sys.argv[1:])\n"
+        "import sys\nfrom texlab.cli.main import main\ncode = main(sys.argv[1:])\n"
         f"print([name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)\nsys.exit(code)"
     )
     done = python(code, *arguments)
@@ -177,7 +179,7 @@ def test_asking_imports_nothing_heavy(arguments: list[str]) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")
 def test_without_a_display_the_window_is_refused_and_qt_not_imported() -> None:
-    call = "import sys\nfrom texlab.cli import main\ncode = main([])\n"
+    call = "import sys\nfrom texlab.cli.main import main\ncode = main([])\n"
     done = python(call + "assert 'PySide6' not in sys.modules\nsys.exit(code)")
     assert done.returncode == 2
     assert done.stderr.startswith("texlab: There is no display to open a window on; ")
@@ -185,7 +187,9 @@ def test_without_a_display_the_window_is_refused_and_qt_not_imported() -> None:
 
 
 def test_what_a_terminal_cannot_print_does_not_fail() -> None:
-    done = python("from texlab.cli import main; import sys; sys.exit(main(['gallery']))", PYTHONIOENCODING="ascii")
+    done = python(
+        "from texlab.cli.main import main; import sys; sys.exit(main(['gallery']))", PYTHONIOENCODING="ascii"
+    )
     assert done.returncode == 0
     assert r"Ram\xf3n" in done.stdout
 
@@ -255,7 +259,7 @@ def test_the_entry_point_of_the_window_takes_a_file(monkeypatch: pytest.MonkeyPa
 def test_a_file_or_a_texture_alone_opens_the_window(
     texlab: Texlab, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    from texlab import app
+    from texlab.app import start as app
 
     opened: list[str | None] = []
     monkeypatch.setattr(app, "run_gui", lambda image: opened.append(image) or 0)

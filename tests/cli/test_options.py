@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab.commands._options import (
+from texlab.cli.commands._options import (
     output_file,
     output_folder,
     parse_crop,
@@ -19,8 +19,8 @@ from texlab.commands._options import (
     parse_size,
     refuse_overwriting,
 )
+from texlab_core.engine.inputs import Crop
 from texlab_core.errors import InputError, ParamError
-from texlab_core.inputs import Crop
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,8 +7,8 @@ import json
 import pytest
 from stub_method import stub  # noqa: F401
 
-from texlab.cli import main
-from texlab.commands.presets import own_presets
+from texlab.cli.commands.presets import own_presets
+from texlab.cli.main import main
 
 METHOD = "stub"
 pytestmark = pytest.mark.usefixtures("stub")

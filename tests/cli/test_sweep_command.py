@@ -8,9 +8,9 @@ import pytest
 from PIL import Image
 from stub_method import running, stub  # noqa: F401
 
-from texlab.cli import main
-from texlab.commands.presets import own_presets
-from texlab_core.presets import Preset
+from texlab.cli.commands.presets import own_presets
+from texlab.cli.main import main
+from texlab_core.documents.presets import Preset
 from texlab_core.sheets.sweep_recipes import find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")

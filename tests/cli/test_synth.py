@@ -13,15 +13,16 @@ import numpy as np
 import pytest
 
 from tests.core.toy import NoiseParams, noise_method
-from texlab_core import registry, synthesize
-from texlab_core.formats.png_text import read_text
-from texlab_core.formats.reading import read_image
-from texlab_core.formats.writing import write_image
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import ArraysInput, Crop
-from texlab_core.recipes.reading import KEY
-from texlab_core.record import read_recipe, save_result
-from texlab_core.run import Job, run
+from texlab_core import synthesize
+from texlab_core.documents.reading import KEY
+from texlab_core.documents.record import read_recipe, save_result
+from texlab_core.engine import registry
+from texlab_core.engine.inputs import ArraysInput, Crop
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.png_text import read_text
+from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.writing import write_image
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -145,7 +146,7 @@ def test_a_preset_is_the_base_of_settings(texlab: Texlab, ramp: Path) -> None:
 def test_mistakes_are_refused_before_the_work_starts(
     texlab: Texlab, ramp: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], words: str
 ) -> None:
-    monkeypatch.setattr("texlab_core.run.run", lambda *_: pytest.fail("The work started."))
+    monkeypatch.setattr("texlab_core.engine.run.run", lambda *_: pytest.fail("The work started."))
     before = ramp.read_bytes()
     shown = texlab("synth", ramp, *TOY, "--out", "a.png", "--json", *arguments)
     assert shown.code == 2
@@ -169,7 +170,7 @@ def test_an_interrupted_run_leaves_no_file(texlab: Texlab, ramp: Path, monkeypat
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("texlab_core.run.run", interrupted)
+    monkeypatch.setattr("texlab_core.engine.run.run", interrupted)
     shown = texlab("synth", ramp, *TOY, "--out", "a.png")
     assert (shown.code, shown.out, shown.err) == (130, "", "")
     assert not Path("a.png").exists()

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from texlab import cli, terminal
-from texlab.terminal import complain, interrupted, logged_quietly, orderly_interrupts
+from texlab.cli import main as cli
+from texlab.cli import terminal
+from texlab.cli.terminal import complain, interrupted, logged_quietly, orderly_interrupts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -155,7 +156,7 @@ def test_uninterrupted_blocks_leave_no_trace() -> None:
 )
 def test_ctrl_c_ends_with_130_and_without_half_a_file(tmp_path: Path, arguments: list[str], presses: int) -> None:
     command = [arguments[0], "gallery:structured-pebbles", *arguments[1:], "--out", str(tmp_path / "a.png")]
-    started = "import sys\nfrom texlab.cli import main\nprint('go', flush=True)\nsys.exit(main(sys.argv[1:]))"
+    started = "import sys\nfrom texlab.cli.main import main\nprint('go', flush=True)\nsys.exit(main(sys.argv[1:]))"
     with subprocess.Popen(
         [sys.executable, "-c", started, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
@@ -187,7 +188,7 @@ def test_what_the_core_logs_goes_to_the_log_file(
 
 def test_help_and_version_do_not_even_import_numpy() -> None:
     code = (
-        "import sys\nfrom texlab.cli import main\nfor each in ['--help', '--version']: main([each])\n"
+        "import sys\nfrom texlab.cli.main import main\nfor each in ['--help', '--version']: main([each])\n"
         "print(json.dumps('numpy' in sys.modules), file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", f"import json\n{code}"], capture_output=True, check=True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from texlab_core.formats.reading import read_image
+from texlab_core.images.formats.reading import read_image
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What the window was asked for."""
-    import texlab.app
+    import texlab.app.start
 
     seen: list[Any] = []
 
@@ -32,8 +32,8 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         seen.append(image)
         return 0
 
-    monkeypatch.setattr(texlab.app, "run_gui", run_gui)
-    monkeypatch.setattr(texlab.app, "screenshot", screenshot)
+    monkeypatch.setattr(texlab.app.start, "run_gui", run_gui)
+    monkeypatch.setattr(texlab.app.start, "screenshot", screenshot)
     return seen
 
 
@@ -111,7 +111,7 @@ def test_a_screenshot_that_finds_no_room_leaves_what_was_there(tmp_path: Path) -
     out.parent.mkdir()
     out.write_bytes(b"before")
     limited = (
-        "import resource, signal, sys\nfrom texlab.cli import main\nfrom texlab_core import files\n"
+        "import resource, signal, sys\nfrom texlab.cli.main import main\nfrom texlab_core import files\n"
         "write = files.write_whole\n"
         "def limited(path, data):\n"
         "    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import strategies as st
 
-from texlab_core.images import as_exemplar
-from texlab_core.params import Params, describe
-from texlab_core.registry import Method, methods
-from texlab_core.run import Job
+from texlab_core.engine.params import Params, describe
+from texlab_core.engine.registry import Method, methods
+from texlab_core.engine.run import Job
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
-    from texlab_core.inputs import ImageInput
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import FloatImage
 
 METHODS = list(methods().values())
 IDS = list(methods())

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from tests.contract.cases import IDS, METHODS, assert_sentence, params_of
 from texlab_core.api import synthesize
+from texlab_core.engine.params import Field, describe
 from texlab_core.errors import ParamError
-from texlab_core.params import Field, describe
 
 if TYPE_CHECKING:
-    from texlab_core.registry import Method
+    from texlab_core.engine.registry import Method
 
 FIELDS = [
     pytest.param(method, field, id=f"{method.id}-{field.name}")

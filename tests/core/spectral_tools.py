@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.run import Streams
-from texlab_core.spectral.analysis import analyze_plane
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V, CHANNELS, WIDTHS
-from texlab_core.spectral.fourier import random_phase
-from texlab_core.spectral.marginal import Histogram16
-from texlab_core.spectral.progress import Progress, finish
-from texlab_core.spectral.synthesis import Design, design, synthesize_plane
-from texlab_core.spectral.tone import Tone
+from texlab_core.engine.progress import Progress, finish
+from texlab_core.engine.run import Streams
+from texlab_core.methods.spectral.analysis import analyze_plane
+from texlab_core.methods.spectral.fourier import random_phase
+from texlab_core.methods.spectral.marginal import Histogram16
+from texlab_core.methods.spectral.synthesis import Design, design, synthesize_plane
+from texlab_core.methods.spectral.tone import Tone
+from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V, CHANNELS, WIDTHS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from texlab_core.spectral.code import MsgCode
+    from texlab_core.methods.spectral.code import MsgCode
 
 ANY = Progress(dict.fromkeys("abcdefgh", 1.0))
 FLAT = Tone(Histogram16("blocks", (1 / 16,) * 16))

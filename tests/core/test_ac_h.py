@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from tests.core.spectral_tools import ANY, sinusoid, texture, white
-from texlab_core.images import as_exemplar
-from texlab_core.run import Job, Streams, run
-from texlab_core.spectral.acf import PARAMETERS, Acf, measure, shape_noise, spectrum
-from texlab_core.spectral.fourier import random_phase
-from texlab_core.spectral.progress import finish
+from texlab_core.engine.progress import finish
+from texlab_core.engine.run import Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.spectral.acf import PARAMETERS, Acf, measure, shape_noise, spectrum
+from texlab_core.methods.spectral.fourier import random_phase
 
 
 def test_there_are_60_samples_and_the_variance() -> None:

@@ -12,16 +12,16 @@ import pytest
 
 import texlab_core
 from tests.core.toy import NoiseParams, noise_method
-from texlab_core import registry
+from texlab_core.engine import registry
+from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.registry import EXEMPLAR, InputSpec
+from texlab_core.engine.run import Job, run
 from texlab_core.errors import Cancelled, ImageError, ParamError
-from texlab_core.inputs import DataInput
-from texlab_core.registry import EXEMPLAR, InputSpec
-from texlab_core.run import Job, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from texlab_core.steps import Step
+    from texlab_core.engine.steps import Step
 
 IMAGE = np.linspace(0, 1, 8 * 9, dtype=np.float32).reshape(8, 9)
 

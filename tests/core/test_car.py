@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tests.core.spectral_tools import ANY, texture
-from texlab_core.images import as_exemplar
-from texlab_core.methods.car import CarParams
-from texlab_core.run import Job, Streams, run
-from texlab_core.spectral.car import (
+from texlab_core.engine.progress import finish
+from texlab_core.engine.run import Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.spectral.car import (
     COEFFICIENTS,
     OFFSETS,
     Car,
@@ -19,8 +19,8 @@ from texlab_core.spectral.car import (
     shape_noise,
     transfer,
 )
-from texlab_core.spectral.fourier import random_phase
-from texlab_core.spectral.progress import finish
+from texlab_core.methods.spectral.fourier import random_phase
+from texlab_core.methods.spectral.method_car import CarParams
 
 
 def model_of(weights: dict[tuple[int, int], float], noise: float = 3.0) -> Car:

@@ -5,9 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from texlab_core.color import combine, interleave, principal_axes, principal_axes_task, transport_palette
-from texlab_core.run import Streams
-from texlab_core.tasks import finish
+from texlab_core.engine.run import Streams
+from texlab_core.transforms.colour import (
+    combine,
+    interleave,
+    principal_axes,
+    principal_axes_task,
+    transport_palette,
+)
+from texlab_core.work.tasks import finish
 
 
 def colours(shape=(40, 50), seed=0):

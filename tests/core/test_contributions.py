@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from texlab_core.marginals.contributions import contributions
+from texlab_core.methods.heeger_bergen.contributions import contributions
 from texlab_core.transforms import steerable
 from texlab_core.transforms.steerable import BandKey
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import label as connected
 
 from texlab_core.errors import InputError
-from texlab_core.stats import copying
+from texlab_core.measures import copying
 
 
 def identity(height: int, width: int) -> np.ndarray:

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab_core.multiresolution.analysis import analyze_steps, choose_depth, periodic_component
-from texlab_core.multiresolution.collapse import coarsest, collapse_steps
-from texlab_core.multiresolution.generators import finish
-from texlab_core.multiresolution.quadtree import Grid
+from texlab_core.methods.de_bonet.analysis import analyze_steps, choose_depth, periodic_component
+from texlab_core.methods.de_bonet.collapse import coarsest, collapse_steps
+from texlab_core.methods.de_bonet.quadtree import Grid
 from texlab_core.transforms import gaussian, laplacian
 from texlab_core.transforms.oriented import derivatives, kernels
+from texlab_core.work.tasks import finish
 
 
 def pixels(height: int, width: int, channels: int = 1, seed: int = 0) -> np.ndarray:

@@ -8,12 +8,12 @@ from de_bonet_oracle import candidate_sets, rasters
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from texlab_core.engine.run import Streams
 from texlab_core.kernels.candidates import ranks
-from texlab_core.multiresolution import sampling as sampling_module
-from texlab_core.multiresolution.analysis import analyze_steps
-from texlab_core.multiresolution.generators import finish
-from texlab_core.multiresolution.maps import candidate_map
-from texlab_core.multiresolution.sampling import (
+from texlab_core.methods.de_bonet import sampling as sampling_module
+from texlab_core.methods.de_bonet.analysis import analyze_steps
+from texlab_core.methods.de_bonet.maps import candidate_map
+from texlab_core.methods.de_bonet.sampling import (
     Sampling,
     candidate_bits,
     list_matches,
@@ -21,8 +21,8 @@ from texlab_core.multiresolution.sampling import (
     prepare,
     sample_steps,
 )
-from texlab_core.multiresolution.thresholds import threshold_law
-from texlab_core.run import Streams
+from texlab_core.methods.de_bonet.thresholds import threshold_law
+from texlab_core.work.tasks import finish
 
 
 def exemplar(height: int, width: int, channels: int, seed: int, flat: bool = False) -> np.ndarray:

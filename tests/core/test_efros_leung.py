@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.core.efros_leung_oracle import Oracle
-from texlab_core.images import as_exemplar
-from texlab_core.methods.efros_leung import EfrosLeungParams
-from texlab_core.neighbourhood.windows import integer_weights, offsets
-from texlab_core.run import Job, Streams, run
+from texlab_core.engine.run import Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.windows import integer_weights, offsets
 
 if TYPE_CHECKING:
-    from texlab_core.neighbourhood.fill import Anchor
-    from texlab_core.steps import Result
+    from texlab_core.engine.steps import Result
+    from texlab_core.methods.efros_leung.fill import Anchor
 
 SHAPES = ("square", "disc", "cross", "causal")
 CRITERIA = ("ssd", "flat-ssd", "sad", "ncc")

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 from tests.core.test_efros_leung import image, oracle_for, texture
+from texlab_core.engine.inputs import ArraysInput
+from texlab_core.engine.run import Job, run
 from texlab_core.errors import Cancelled, InputError
-from texlab_core.inputs import ArraysInput
-from texlab_core.methods.efros_leung import EfrosLeungParams
-from texlab_core.neighbourhood import growth as growth_module
-from texlab_core.neighbourhood.draft import draft
-from texlab_core.neighbourhood.explain import explain
-from texlab_core.neighbourhood.windows import LARGEST_SUM, integer_weights, offsets
-from texlab_core.run import Job, run
+from texlab_core.methods.efros_leung import growth as growth_module
+from texlab_core.methods.efros_leung.draft import draft
+from texlab_core.methods.efros_leung.explain import explain
+from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.windows import LARGEST_SUM, integer_weights, offsets
 
 if TYPE_CHECKING:
-    from texlab_core.steps import Result, Step
+    from texlab_core.engine.steps import Result, Step
 
 
 def job(

@@ -6,13 +6,13 @@ import stat
 import numpy as np
 import pytest
 
-from texlab_core import files
+from texlab_core.documents.record import save_maps, save_result
+from texlab_core.engine.run import Job, run
 from texlab_core.errors import InputError
-from texlab_core.files import write_together, write_whole
-from texlab_core.formats import maps as map_files
-from texlab_core.images import as_exemplar
-from texlab_core.record import save_maps, save_result
-from texlab_core.run import Job, run
+from texlab_core.files import whole as files
+from texlab_core.files.whole import write_together, write_whole
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats import maps as map_files
 
 NOISE = np.random.default_rng(0).random((8, 8)).astype(np.float32)
 

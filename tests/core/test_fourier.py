@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from texlab_core.tasks import finish
-from texlab_core.threads import use_workers
 from texlab_core.transforms import fourier, steerable
+from texlab_core.work.tasks import finish
+from texlab_core.work.threads import use_workers
 
 
 def picture(shape, dtype=np.float64):

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from tests.core.spectral_tools import analyzed, sinusoid, texture
-from texlab_core.images import as_exemplar
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V, CHANNELS, WIDTHS
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.transforms.gabor import (
     GaborTransform,
     circles,
@@ -18,6 +17,7 @@ from texlab_core.transforms.gabor import (
     local_frequency,
     psnr,
 )
+from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V, CHANNELS, WIDTHS
 
 
 def wave(size: tuple[int, int], u: float, v: float) -> np.ndarray:

@@ -12,11 +12,11 @@ import pytest
 from PIL import Image
 
 import texlab_core
-from texlab_core import resources as resources_module
 from texlab_core.errors import ImageError
-from texlab_core.gallery import CLASSES, find_entry, gallery
-from texlab_core.images import as_exemplar
-from texlab_core.resources import resource, resources
+from texlab_core.files import resources as resources_module
+from texlab_core.files.resources import resource, resources
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.gallery import CLASSES, find_entry, gallery
 
 CODE = Path(texlab_core.__file__).parent
 
@@ -87,7 +87,7 @@ def test_every_texture_reads_as_the_file_has_it():
 
 def test_listing_decodes_no_image():
     code = (
-        "import sys; from texlab_core.gallery import gallery; assert len(gallery()) == 51; "
+        "import sys; from texlab_core.images.gallery import gallery; assert len(gallery()) == 51; "
         "assert not {'PIL', 'numpy', 'cv2'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=CODE.parent)
@@ -111,7 +111,7 @@ def test_installed_and_zipped_resources_are_found_from_another_folder(tmp_path, 
         place = tmp_path / "site"
     code = (
         f"import sys; sys.path[0] = {str(place)!r}; "
-        "from texlab_core.gallery import find_entry, __file__ as where; "
+        "from texlab_core.images.gallery import find_entry, __file__ as where; "
         f"assert where.startswith({str(place)!r}); "
         "assert find_entry('structured-pebbles').read()[:4] == b'\\x89PNG'"
     )
@@ -132,7 +132,7 @@ def test_missing_resources_are_one_clear_sentence(tmp_path, monkeypatch):
 
 
 def test_a_missing_file_is_one_clear_sentence(monkeypatch, tmp_path):
-    monkeypatch.setattr("texlab_core.gallery.resource", lambda path: tmp_path / path)
+    monkeypatch.setattr("texlab_core.images.gallery.resource", lambda path: tmp_path / path)
     entry = find_entry("structured-pebbles")
     with pytest.raises(ImageError, match=r"structured-pebbles\.png is missing from the program's gallery"):
         entry.read()

@@ -7,12 +7,12 @@ import itertools
 import numpy as np
 import pytest
 
-from texlab_core.images import as_exemplar
-from texlab_core.marginals import analysis
-from texlab_core.methods.heeger_bergen import HeegerBergenParams
-from texlab_core.run import AnalysisCache, Job, Streams, run
-from texlab_core.tasks import crew
+from texlab_core.engine.run import AnalysisCache, Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.heeger_bergen import analysis
+from texlab_core.methods.heeger_bergen.method import HeegerBergenParams
 from texlab_core.transforms import fourier
+from texlab_core.work.tasks import crew
 
 
 def texture(shape=(48, 64), channels=1, seed=0):

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from texlab_core.engine.params import describe
+from texlab_core.engine.registry import methods
 from texlab_core.figures import encode, figures
-from texlab_core.params import describe
-from texlab_core.registry import methods
-from texlab_core.resources import resource
+from texlab_core.files.resources import resource
 
 PAGES = {
     entry.name[:-3]: entry.read_text(encoding="utf-8")

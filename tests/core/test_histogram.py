@@ -11,7 +11,7 @@ from texlab_core.kernels import ranks
 from texlab_core.stats import histogram
 from texlab_core.stats.distances import w1, w1_sorted
 from texlab_core.stats.moments import moments
-from texlab_core.tasks import finish
+from texlab_core.work.tasks import finish
 
 
 def sample(count, seed=1):

@@ -12,8 +12,8 @@ import tifffile
 from PIL import Image, ImageCms, ImageOps
 
 from texlab_core.errors import ImageError
-from texlab_core.formats import reading as image_files
-from texlab_core.images import as_exemplar
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats import reading as image_files
 
 GRAY8 = np.random.default_rng(0).integers(0, 256, (7, 9), dtype=np.uint8)
 RGB8 = np.random.default_rng(1).integers(0, 256, (7, 9, 3), dtype=np.uint8)
@@ -183,7 +183,7 @@ def test_tiff_with_fewer_strips_than_its_height_is_damaged():
 def test_tiff_that_decodes_to_too_many_bytes_is_refused(monkeypatch):
     data = tiff(np.zeros((8, 8, 16)), photometric="minisblack", planarconfig="contig", compression="zlib")
     assert as_exemplar(data).channels == 1
-    monkeypatch.setattr("texlab_core.formats.tiff._MAX_BYTES", 8 * 8 * 16 * 8 - 1)
+    monkeypatch.setattr("texlab_core.images.formats.tiff._MAX_BYTES", 8 * 8 * 16 * 8 - 1)
     with pytest.raises(ImageError, match=r"has 16 channels of float64 in 8 x 8 pixels; at most 0 GB are decoded"):
         as_exemplar(data)
 

@@ -14,10 +14,10 @@ from hypothesis.extra import numpy as hnp
 from PIL import Image
 
 from texlab_core.errors import ImageError, InputError
-from texlab_core.files import write_whole
-from texlab_core.formats.png_text import read_text, with_text
-from texlab_core.formats.writing import encode_png, quantize, write_image
-from texlab_core.images import as_exemplar
+from texlab_core.files.whole import write_whole
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.png_text import read_text, with_text
+from texlab_core.images.formats.writing import encode_png, quantize, write_image
 
 NOISE = np.random.default_rng(0).random((9, 7, 3)).astype(np.float32)
 

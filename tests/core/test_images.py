@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from texlab_core.engine.inputs import Crop, hash_arrays
 from texlab_core.errors import ImageError
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import Crop, hash_arrays
+from texlab_core.images.exemplar import as_exemplar
 
 
 def colour(height=6, width=8, dtype=np.uint8, seed=0):

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tests.core.test_record import levels, method, result_of  # noqa: F401
+from texlab_core.documents.record import save_maps
+from texlab_core.engine.steps import Curve, Map
 from texlab_core.errors import InputError
-from texlab_core.formats.maps import picture
-from texlab_core.images import as_exemplar
-from texlab_core.record import save_maps
-from texlab_core.steps import Curve, Map
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.maps import picture
 
 SOURCE = np.dstack(np.meshgrid(np.arange(9), np.arange(13), indexing="ij")).astype(np.int32)
 MAPS = {

@@ -20,17 +20,24 @@ from tests.core.spectral_tools import (
     white,
 )
 from texlab_core.api import synthesize
+from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.progress import finish
+from texlab_core.engine.run import Job, run
 from texlab_core.errors import InputError, ParamError
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import DataInput
-from texlab_core.methods.msg import MsgParams
-from texlab_core.run import Job, run
-from texlab_core.spectral.analysis import channel_marginals, equivalent_bandwidths, residual_zones
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V, CHANNELS, WHITE_BANDWIDTHS, WIDTHS, residual_reach
-from texlab_core.spectral.code import MsgCode, Residual, quantize
-from texlab_core.spectral.codefile import code_input
-from texlab_core.spectral.progress import finish
-from texlab_core.spectral.synthesis import Lobes, closed_form_overlap, design, synthesis_bandwidths
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.spectral.analysis import channel_marginals, equivalent_bandwidths, residual_zones
+from texlab_core.methods.spectral.code import MsgCode, Residual, quantize
+from texlab_core.methods.spectral.codefile import code_input
+from texlab_core.methods.spectral.method_msg import MsgParams
+from texlab_core.methods.spectral.synthesis import Lobes, closed_form_overlap, design, synthesis_bandwidths
+from texlab_core.transforms.gabor_bank import (
+    CENTRES_U,
+    CENTRES_V,
+    CHANNELS,
+    WHITE_BANDWIDTHS,
+    WIDTHS,
+    residual_reach,
+)
 
 SIZES = [(256, 256), (128, 128), (480, 640), (129, 200), (77, 301)]
 

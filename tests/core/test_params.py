@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from texlab_core.engine.params import Knob, Params, describe
 from texlab_core.errors import InputError, ParamError
-from texlab_core.params import Knob, Params, describe
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,20 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from stub_method import STUB, StubParams, stub  # noqa: F401
 
-from texlab_core import registry
+from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name, find_preset
+from texlab_core.documents.presets import (
+    Preset,
+    PresetError,
+    check_name,
+    pick,
+    preset_from_json,
+    read_preset,
+    write_preset,
+)
+from texlab_core.engine import registry
+from texlab_core.engine.params import describe
+from texlab_core.engine.registry import methods
 from texlab_core.errors import InputError
-from texlab_core.params import describe
-from texlab_core.preset_store import PresetStore, bundled_presets, export_preset, file_name, find_preset
-from texlab_core.presets import Preset, PresetError, check_name, pick, preset_from_json, read_preset, write_preset
-from texlab_core.registry import methods
 
 pytestmark = pytest.mark.usefixtures("stub")
 any_value = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -16,18 +16,18 @@ from hypothesis.extra import numpy as hnp
 from PIL import Image
 
 from tests.core.toy import NoiseParams, noise_method
-from texlab_core import registry
+from texlab_core.documents.embedding import MAX_EMBEDDED, pack_pixels, unpack_pixels
+from texlab_core.documents.recipe import recipe_json
+from texlab_core.documents.record import read_recipe, save_result, summary
+from texlab_core.engine import registry
+from texlab_core.engine.inputs import ArraysInput, Crop, DataInput
+from texlab_core.engine.registry import EXEMPLAR, InputSpec
+from texlab_core.engine.run import Job, run
+from texlab_core.engine.steps import Curve
 from texlab_core.errors import InputError, RecipeError
-from texlab_core.formats.png_text import with_text
-from texlab_core.formats.writing import encode_png, write_image
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import ArraysInput, Crop, DataInput
-from texlab_core.recipes.embedding import MAX_EMBEDDED, pack_pixels, unpack_pixels
-from texlab_core.recipes.recipe import recipe_json
-from texlab_core.record import read_recipe, save_result, summary
-from texlab_core.registry import EXEMPLAR, InputSpec
-from texlab_core.run import Job, run
-from texlab_core.steps import Curve
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.png_text import with_text
+from texlab_core.images.formats.writing import encode_png, write_image
 
 METHOD = "toy-recipe"
 INPUTS = (
@@ -236,7 +236,7 @@ def test_a_very_large_source_is_not_encoded_to_find_that_out(monkeypatch):
         sizes.append(values.size)
         return encode_png(values, text)
 
-    monkeypatch.setattr("texlab_core.recipes.embedding.encode_png", counting)
+    monkeypatch.setattr("texlab_core.documents.embedding.encode_png", counting)
     assert pack_pixels(levels(height=3600, width=3600)) is None
     assert sum(sizes) < 3600 * 3600
     flat = np.zeros((3600, 3600, 3), np.float32)

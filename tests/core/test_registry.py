@@ -11,7 +11,7 @@ import pytest
 
 import texlab_core.methods
 from tests.core.toy import noise_method
-from texlab_core import registry
+from texlab_core.engine import registry
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:

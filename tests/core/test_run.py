@@ -13,19 +13,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.core.toy import Log, NoiseParams, noise_method
-from texlab_core import __version__, registry
+from texlab_core.engine import registry
+from texlab_core.engine.inputs import DataInput, ImageInput
+from texlab_core.engine.params import Params
+from texlab_core.engine.registry import InputSpec
+from texlab_core.engine.run import MAX_SEED, AnalysisCache, Job, Streams, array_bytes, check_size, run
 from texlab_core.errors import Cancelled, InputError, ParamError
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import DataInput, ImageInput
-from texlab_core.params import Params
-from texlab_core.registry import InputSpec
-from texlab_core.run import MAX_SEED, AnalysisCache, Job, Streams, array_bytes, check_size, run
-from texlab_core.threads import use_workers, workers
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.version import __version__
+from texlab_core.work.threads import use_workers, workers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from texlab_core.steps import Step
+    from texlab_core.engine.steps import Step
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from texlab_core.tasks import finish
-from texlab_core.threads import use_workers
 from texlab_core.transforms import filters, steerable
+from texlab_core.work.tasks import finish
+from texlab_core.work.threads import use_workers
 
 SIZES = [(37, 41), (17, 64), (301, 167), (512, 512)]
 ORIENTATIONS = [1, 2, 4, 6, 18]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab_core import strict_json
 from texlab_core.errors import InputError, RecipeError
+from texlab_core.files import strict_json
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 DATA = st.recursive(

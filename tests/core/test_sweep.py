@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F401
 
+from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.steps import Map, Output
 from texlab_core.errors import Cancelled, InputError, ParamError
-from texlab_core.run import AnalysisCache, Job, run
 from texlab_core.sheets.sweep import Cell, Sweep, Vary, sweep_of
 from texlab_core.sheets.sweep_running import evidence_of, run_sweep
-from texlab_core.steps import Map, Output
 
 pytestmark = pytest.mark.usefixtures("stub")
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from stub_method import StubParams, exemplar, stub  # noqa: F401
 
-from texlab_core import strict_json
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.params import describe
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import Job
 from texlab_core.errors import RecipeError
-from texlab_core.formats.writing import write_image
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import Crop
-from texlab_core.params import describe
-from texlab_core.registry import find_method
-from texlab_core.run import Job
+from texlab_core.files import strict_json
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.writing import write_image
 from texlab_core.sheets.sweep import Cell, Vary, sweep_of
 from texlab_core.sheets.sweep_recipes import (
     TEXT_KEY,

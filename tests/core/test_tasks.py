@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from texlab_core.tasks import Pace, crew, finish, row_blocks
-from texlab_core.threads import use_workers
+from texlab_core.work.tasks import Pace, crew, finish, row_blocks
+from texlab_core.work.threads import use_workers
 
 
 def task(number, pieces=3, pause=0.0):

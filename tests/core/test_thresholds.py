@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from texlab_core.engine.params import ParamValue
 from texlab_core.errors import ParamError
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.multiresolution.features import Feature, feature_list
-from texlab_core.multiresolution.thresholds import MAX_CELLS, ThresholdTable, threshold_law
-from texlab_core.params import ParamValue
+from texlab_core.methods.de_bonet.features import Feature, feature_list
+from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.thresholds import MAX_CELLS, ThresholdTable, threshold_law
 
 NAMES = [feature.name for feature in feature_list(3, "both", 7)]
 cells = st.dictionaries(

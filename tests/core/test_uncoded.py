@@ -7,12 +7,12 @@ import pytest
 import scipy.fft
 
 from tests.core.spectral_tools import ANY, texture
-from texlab_core.images import as_exemplar
-from texlab_core.methods.uncoded import UncodedParams
-from texlab_core.run import Job, Streams, run
-from texlab_core.spectral.fourier import draw_phase, make_hermitian, mean_square, random_phase
-from texlab_core.spectral.progress import Progress, finish
-from texlab_core.spectral.uncoded import give_phase, make_spot, parameter_count, spectra, subtract_smooth
+from texlab_core.engine.progress import Progress, finish
+from texlab_core.engine.run import Job, Streams, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.spectral.fourier import draw_phase, make_hermitian, mean_square, random_phase
+from texlab_core.methods.spectral.method_uncoded import UncodedParams
+from texlab_core.methods.spectral.uncoded import give_phase, make_spot, parameter_count, spectra, subtract_smooth
 from texlab_core.transforms.fourier import periodic_component
 
 CHANNELS = Progress({f"s {channel}": 1.0 for channel in (1, 2, 3)})

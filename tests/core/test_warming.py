@@ -11,10 +11,10 @@ import pytest
 
 from tests.stub_method import stub  # noqa: F401
 from texlab_core import warming
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.kernels import ranks
-from texlab_core.registry import methods
-from texlab_core.run import run
 from texlab_core.warming import Need, Warmth, every_need, load, warm_up
 
 PATIENCE_S = 60.0
@@ -51,11 +51,11 @@ NOTHING_ELSE = """
 import gc, numpy as np
 from numba.core.dispatcher import Dispatcher
 from texlab_core.errors import InputError
-from texlab_core.images import as_exemplar
-from texlab_core.params import describe
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.engine.params import describe
 from texlab_core.kernels import ranks
-from texlab_core.registry import methods
-from texlab_core.run import Job, run
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import Job, run
 from texlab_core.warming import warm_up
 
 def loaded():

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import ArraysInput, DataInput
-from texlab_core.presets import ExemplarRef
-from texlab_core.record import read_recipe, save_result
-from texlab_core.run import Job, run
-from texlab_core.wording import printable, sentence_case
+from texlab_core.documents.presets import ExemplarRef
+from texlab_core.documents.record import read_recipe, save_result
+from texlab_core.engine.inputs import ArraysInput, DataInput
+from texlab_core.engine.run import Job, run
+from texlab_core.files.wording import printable, sentence_case
+from texlab_core.images.exemplar import as_exemplar
 
 NOISE = np.arange(24, dtype=np.float32).reshape(4, 6) / 32
 

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from texlab_core.inputs import Inputs, exemplar_of
-from texlab_core.params import Knob, Params
-from texlab_core.registry import Method
-from texlab_core.steps import Curve, Output, Step
+from texlab_core.engine.inputs import Inputs, exemplar_of
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import Method
+from texlab_core.engine.steps import Curve, Output, Step
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from texlab_core.run import Streams
+    from texlab_core.engine.run import Streams
 
 
 @dataclass(frozen=True, kw_only=True)

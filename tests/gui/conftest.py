@@ -11,18 +11,18 @@ from PIL import Image
 from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
-from texlab import app as texlab_app
 from texlab import explorer as texlab_explorer  # noqa: F401 (before any test changes what it imports)
+from texlab.app import start as texlab_app
 from texlab.storage.settings import Settings
-from texlab.theme import ThemeSource
-from texlab_core.registry import methods
+from texlab.style.theme import ThemeSource
+from texlab_core.engine.registry import methods
 from texlab_core.warming import warm_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 PATIENCE_MS = 180_000
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from dock_scenes import image_input
 
-from texlab.pictures import to_picture
-from texlab.scene import ColumnScene, Probe, Scene
-from texlab.theme import LIGHT
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.run import Job, run
+from texlab.state.scene import ColumnScene, Probe, Scene
+from texlab.style.pictures import to_picture
+from texlab.style.theme import LIGHT
+from texlab_core.engine.run import Job, run
+from texlab_core.methods.de_bonet.method import DeBonetParams
 
 
 def exemplar(channels: int = 3) -> Any:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from PySide6.QtCore import QPoint, Qt
 
-from texlab.pictures import to_picture
-from texlab.scene import ColumnScene, Frame, Scene
-from texlab.theme import LIGHT
-from texlab_core.inputs import ImageInput, hash_arrays
-from texlab_core.params import Knob, Params
-from texlab_core.steps import Result
+from texlab.state.scene import ColumnScene, Frame, Scene
+from texlab.style.pictures import to_picture
+from texlab.style.theme import LIGHT
+from texlab_core.engine.inputs import ImageInput, hash_arrays
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.steps import Result
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock
-    from texlab.views.image_pane import ImagePane
+    from texlab.widgets.image_pane import ImagePane
 
 
 @dataclass(frozen=True, kw_only=True)

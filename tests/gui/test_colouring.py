@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from texlab import colouring
-from texlab.colouring import Scale, colour_map
-from texlab_core.steps import Map
+from texlab.style import colouring
+from texlab.style.colouring import Scale, colour_map
+from texlab_core.engine.steps import Map
 
 
 def test_diverging_is_white_at_zero_and_symmetric():
@@ -113,5 +113,5 @@ def test_edges_are_darkened():
 
 
 def test_needs_no_qt():
-    code = "import sys, texlab.colouring; sys.exit(any('PySide6' in name for name in sys.modules))"
+    code = "import sys, texlab.style.colouring; sys.exit(any('PySide6' in name for name in sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from texlab.column_run import ColumnRun, spectral_distances
+from texlab.runs.column_run import ColumnRun, spectral_distances
+from texlab_core.engine.run import AnalysisCache, Job, run
 from texlab_core.errors import Cancelled
-from texlab_core.images import as_exemplar
-from texlab_core.run import AnalysisCache, Job, run
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
 
 

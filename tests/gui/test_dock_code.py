@@ -11,21 +11,21 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.code import EDITED, CodeDock, encoded
-from texlab.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
-from texlab.theme import DARK, LIGHT
-from texlab_core.inputs import DataInput
-from texlab_core.registry import methods
-from texlab_core.run import Job, run
-from texlab_core.spectral.bank import WIDTHS
-from texlab_core.spectral.codefile import code_from_json, code_input, code_to_json, read_code
-from texlab_core.spectral.synthesis import design
+from texlab.docks.spectral.code import EDITED, CodeDock, encoded
+from texlab.docks.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import Job, run
+from texlab_core.methods.spectral.codefile import code_from_json, code_input, code_to_json, read_code
+from texlab_core.methods.spectral.synthesis import design
+from texlab_core.transforms.gabor_bank import WIDTHS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 GROUPS = ("energy", "u", "v", "residual", "histogram")
 

@@ -8,8 +8,8 @@ from dock_scenes import check_controls, column_of, feed, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
 from texlab.docks.convergence import ConvergenceDock, heat_of
-from texlab.theme import DARK, LIGHT
-from texlab_core.steps import Curve
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.steps import Curve
 from texlab_core.transforms.steerable import BandKey, band_keys
 
 KEYS = band_keys(2, 3)

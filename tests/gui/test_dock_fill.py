@@ -13,19 +13,19 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.fill import FillDock, mask_input, read_mask
+from texlab.docks.fill.dock import FillDock, mask_input, read_mask
+from texlab.docks.fill.mask_canvas import paint_line
 from texlab.storage import kept_inputs
 from texlab.storage.kept_inputs import input_to_json, keep_inputs, load_input
-from texlab.views.mask_canvas import paint_line
+from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
+from texlab_core.engine.registry import methods
 from texlab_core.errors import InputError
-from texlab_core.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
-from texlab_core.registry import methods
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 places = st.tuples(st.floats(-5, 35), st.floats(-5, 25))
 

@@ -12,15 +12,15 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
 from tests.gui.conftest import wait_idle
-from texlab.docks.gabor import ZEBRA, GaborDock, strongest_filter
-from texlab.spectral.gabor_pictures import Pair, strongest
-from texlab.spectral.plane_pane import Ring
-from texlab.theme import DARK, LIGHT
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V
+from texlab.docks.spectral.gabor import ZEBRA, GaborDock, strongest_filter
+from texlab.docks.spectral.gabor_pictures import Pair, strongest
+from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plane_pane import Ring
 from texlab_core.transforms.gabor import filter_bank, psnr
+from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V
 
 if TYPE_CHECKING:
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 SIDE = 64
 

@@ -5,9 +5,9 @@ import pytest
 from dock_scenes import check_controls, column_of, feed, noise, scene_of, shown
 from PySide6.QtCore import QPoint, Qt
 
-from texlab.bands.comparison import compare, density
-from texlab.docks.histograms import HistogramsDock
-from texlab.theme import DARK, LIGHT
+from texlab.docks.bands.comparison import compare, density
+from texlab.docks.bands.histograms import HistogramsDock
+from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.plots import log_ticks, number
 from texlab_core.stats.bands import LUMA
 from texlab_core.transforms import steerable

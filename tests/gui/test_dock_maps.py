@@ -5,10 +5,10 @@ import pytest
 from dock_scenes import check_controls, column_of, feed, hover, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
-from texlab import colouring
 from texlab.docks.maps import MapsDock
-from texlab.theme import DARK, LIGHT
-from texlab_core.steps import Map
+from texlab.style import colouring
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.steps import Map
 
 ROWS, COLUMNS = np.mgrid[:48, :64]
 

@@ -5,13 +5,13 @@ import pytest
 from dock_scenes import check_controls, click, column_of, feed, hover, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
-from texlab import colouring
-from texlab.bands.controls import BandCache, PyramidSettings
-from texlab.bands.pictures import PyramidPictures, PyramidRequest
-from texlab.docks.pyramid import PyramidDock
-from texlab.pictures import to_picture
-from texlab.recent import Recent
-from texlab.theme import DARK, LIGHT
+from texlab.docks.bands.controls import BandCache, PyramidSettings
+from texlab.docks.bands.pictures import PyramidPictures, PyramidRequest
+from texlab.docks.bands.pyramid import PyramidDock
+from texlab.docks.recent import Recent
+from texlab.style import colouring
+from texlab.style.pictures import to_picture
+from texlab.style.theme import DARK, LIGHT
 from texlab_core.errors import Cancelled
 from texlab_core.stats.bands import amplify, projection, split
 from texlab_core.transforms.steerable import BandKey

@@ -9,12 +9,12 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 
-from texlab.docks.spectrum import SpectrumDock
-from texlab.spectral.plane_pane import Arrow, Ring, Spot
-from texlab.theme import DARK, LIGHT
-from texlab_core.run import Job, run
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V
+from texlab.docks.spectral.spectrum import SpectrumDock
+from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plane_pane import Arrow, Ring, Spot
+from texlab_core.engine.run import Job, run
 from texlab_core.stats.spectrum import QUANTIZATION
+from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V
 
 SIDE = 128
 

@@ -14,18 +14,18 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
 from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
-from texlab.controller import Controller
-from texlab.dock_host import DockHost
-from texlab.docks.sweeps import SweepsDock
-from texlab.session import Column, Sample, Session, State
-from texlab.slots import Slots
-from texlab.sweep_run import SweepPlan, with_cell
-from texlab.theme import DARK, LIGHT, ThemeSource
-from texlab.views.contact_sheet_view import packed
-from texlab.views.sweep_axis import AxisEditor
+from texlab.docks.host import DockHost
+from texlab.docks.sweeps.axis import AxisEditor
+from texlab.docks.sweeps.dock import SweepsDock
+from texlab.docks.sweeps.sheet_view import packed
+from texlab.runs.controller import Controller
+from texlab.runs.slots import Slots
+from texlab.runs.sweep_run import SweepPlan, with_cell
+from texlab.state.session import Column, Sample, Session, State
+from texlab.style.theme import DARK, LIGHT, ThemeSource
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError
-from texlab_core.registry import find_method
-from texlab_core.run import run
 from texlab_core.sheets.sweep import Vary
 from texlab_core.sheets.sweep_recipes import SweepRecipe, bundled_sweeps, find_sweep
 
@@ -80,7 +80,9 @@ class Bench:
 
 @pytest.fixture
 def bench(qtbot, monkeypatch):
-    monkeypatch.setattr("texlab.docks.sweeps.bundled_sweeps", lambda method: (RECIPE,) if method == "stub" else ())
+    monkeypatch.setattr(
+        "texlab.docks.sweeps.dock.bundled_sweeps", lambda method: (RECIPE,) if method == "stub" else ()
+    )
     made = []
 
     def make(*columns):

@@ -11,9 +11,8 @@ from dock_scenes import check_controls, feed, shown
 from PySide6.QtCore import QPoint, Qt
 
 from tests.gui.conftest import hb, ids, wait_idle
-from texlab.docks.explain import INVITATION, ExplainDock
-from texlab.explaining import explainer_for
-from texlab.explaining.de_bonet import (
+from texlab.docks.explain import explainer_for
+from texlab.docks.explain.de_bonet import (
     MOST_MARKS,
     explain_pixel,
     feature_words,
@@ -22,10 +21,11 @@ from texlab.explaining.de_bonet import (
     structure_of,
     summary,
 )
-from texlab.scene import Probe
-from texlab.theme import DARK, LIGHT
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.multiresolution.explain import explain
+from texlab.docks.explain.dock import INVITATION, ExplainDock
+from texlab.state.scene import Probe
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.methods.de_bonet.explain import explain
+from texlab_core.methods.de_bonet.method import DeBonetParams
 
 LEFT = Qt.MouseButton.LeftButton
 LOOSE = {"alpha": 1.2, "siblings": "parity"}

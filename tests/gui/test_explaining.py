@@ -4,18 +4,19 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, feed, shown
 from PySide6.QtCore import Qt
+from texlab.docks.explain import explainer_for
 
-from texlab.docks.explain import ExplainDock
-from texlab.explaining import efros_leung, explainer_for, heeger_bergen
-from texlab.pictures import to_picture
-from texlab.scene import Mark, Probe, Scene
-from texlab.theme import DARK, LIGHT
+from texlab.docks.explain import efros_leung, heeger_bergen
+from texlab.docks.explain.dock import ExplainDock
+from texlab.state.scene import Mark, Probe, Scene
+from texlab.style.pictures import to_picture
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.inputs import ImageInput, hash_arrays
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import Job, run
 from texlab_core.errors import Cancelled
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import ImageInput, hash_arrays
-from texlab_core.neighbourhood.explain import explain
-from texlab_core.registry import find_method
-from texlab_core.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.efros_leung.explain import explain
 
 
 def texture(channels=3):

@@ -19,13 +19,13 @@ from PySide6.QtWidgets import (
     QSlider,
 )
 
-from texlab import form as form_module
-from texlab.form import ChoiceKnob, KnobWidget, NumberKnob, ParameterForm, SwitchKnob, register_editor
-from texlab.scales import Scale
-from texlab.views.parameters import ParametersView
+from texlab.form import form as form_module
+from texlab.form.form import ChoiceKnob, KnobWidget, NumberKnob, ParameterForm, SwitchKnob, register_editor
+from texlab.form.panel import ParametersView
+from texlab.form.scales import Scale
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import methods
 from texlab_core.errors import ParamError
-from texlab_core.params import Knob, Params
-from texlab_core.registry import methods
 
 LEFT = Qt.MouseButton.LeftButton
 

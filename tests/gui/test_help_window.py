@@ -6,10 +6,10 @@ import pytest
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QTextDocument
 
-from texlab.actions import COMMANDS
 from texlab.docks import dock_classes
-from texlab.views.help import HelpWindow, help_pages
-from texlab_core.resources import resource
+from texlab.window.commands import COMMANDS
+from texlab.window.help_window import HelpWindow, help_pages
+from texlab_core.files.resources import resource
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import shiboken6
 
-from texlab.errands import Errands
-from texlab.jobs import Task, Worker
-from texlab.slots import Rank, Slots
+from texlab.runs.errands import Errands
+from texlab.runs.slots import Rank, Slots
+from texlab.runs.worker import Task, Worker
 from texlab_core.errors import Cancelled, InputError
 
 if TYPE_CHECKING:

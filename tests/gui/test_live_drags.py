@@ -11,13 +11,13 @@ from dock_scenes import column_of, scene_of
 
 from tests.gui.conftest import drag, handle_point, ids, result_image, wait_idle
 from tests.stub_method import StubParams
-from texlab.dock_host import DockHost
 from texlab.docks.base import Dock
-from texlab.jobs import Worker
-from texlab.scene import Question
-from texlab.slots import Slots
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.run import run
+from texlab.docks.host import DockHost
+from texlab.runs.slots import Slots
+from texlab.runs.worker import Worker
+from texlab.state.scene import Question
+from texlab_core.engine.run import run
+from texlab_core.methods.de_bonet.method import DeBonetParams
 
 
 class Gate:
@@ -88,7 +88,7 @@ def test_cancel_forgets_patient_requests_too(worker, qtbot):
 
 def test_a_quick_method_is_dragged_at_full_size(open_window, texture, qtbot, monkeypatch):
     # Quick on any machine, however busy it is.
-    monkeypatch.setattr("texlab.column_runner.draft_size", lambda size, seconds: None)
+    monkeypatch.setattr("texlab.runs.column_runner.draft_size", lambda size, seconds: None)
     explorer = open_window(str(texture), [("de-bonet", DeBonetParams())])
     controller, session = explorer.controller, explorer.session
     column = session.state.columns[0]
@@ -158,7 +158,7 @@ def test_a_dock_rests_between_answers_and_ends_with_the_newest(qtbot):
 
 
 def test_a_changed_column_does_not_wait_for_the_end_of_the_others(open_window, texture, qtbot, monkeypatch, stub):
-    monkeypatch.setattr("texlab.controller.os.cpu_count", lambda: 1)
+    monkeypatch.setattr("texlab.runs.controller.os.cpu_count", lambda: 1)
     long, short = ("stub", StubParams(rounds=500)), ("stub", StubParams(rounds=2))
     explorer = open_window(str(texture), [long, short])
     controller, (first, second) = explorer.controller, ids(explorer)

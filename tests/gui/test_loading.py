@@ -10,8 +10,8 @@ import pytest
 
 from tests.gui.conftest import PATIENCE_MS, hb, ids, wait_idle
 from tests.stub_method import StubParams
-from texlab import controller
-from texlab.views.column import status_line
+from texlab.columns.column import status_line
+from texlab.runs import controller
 from texlab_core.errors import Cancelled
 from texlab_core.warming import Need, Warmth, every_need
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from texlab.explorer import Explorer
-    from texlab_core.registry import Method
+    from texlab.app.explorer import Explorer
+    from texlab_core.engine.registry import Method
 
 STUB = ("stub", StubParams())
 

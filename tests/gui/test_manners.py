@@ -15,22 +15,22 @@ from PySide6.QtGui import QGuiApplication, QHelpEvent, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QTabBar, QToolTip
 
 from tests.gui.conftest import drag, hb, ids, result_image, wait_idle
-from texlab import session as session_module
-from texlab.app import closed_by_signals
-from texlab.jobs import Worker
-from texlab.session import Sample, Session
+from texlab.app.start import closed_by_signals
+from texlab.runs.worker import Worker
+from texlab.state import session as session_module
+from texlab.state.session import Sample, Session
 from texlab.storage.kept_exemplar import Kept, keep, load
 from texlab.storage.settings import Settings
-from texlab.views.palette import CommandPalette
-from texlab.views.status_line import LINES, StatusLine
 from texlab.widgets.plots import Plot
-from texlab_core.images import as_exemplar
+from texlab.widgets.status_line import LINES, StatusLine
+from texlab.window.palette import CommandPalette
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 NO_KEYS = Qt.KeyboardModifier.NoModifier
 CONTROL = Qt.KeyboardModifier.ControlModifier

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from texlab.bands import mosaic
+from texlab.docks.bands import mosaic
 
 SHAPES = [(32, 48)] * 5 + [(16, 24)] * 4 + [(8, 12)]
 

@@ -12,20 +12,20 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
-from texlab.opening import open_source, restored
-from texlab.preparation import prepare
-from texlab.session import Column, Session, State
-from texlab_core.images import as_exemplar
-from texlab_core.record import save_result
-from texlab_core.registry import methods
-from texlab_core.run import Job, run
-from texlab_core.spectral.codefile import load_code_input, write_code
+from texlab.runs.exemplar import prepare
+from texlab.state.session import Column, Session, State
+from texlab.window.opener import open_source, restored
+from texlab_core.documents.record import save_result
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.spectral.codefile import load_code_input, write_code
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from texlab.explorer import Explorer
+    from texlab.app.explorer import Explorer
 
 
 @pytest.fixture
@@ -41,8 +41,8 @@ def code_file(tmp_path: Path) -> Path:
 @pytest.fixture
 def preset_file(tmp_path: Path) -> Path:
     """A preset for Heeger-Bergen."""
-    from texlab_core.preset_store import export_preset
-    from texlab_core.presets import Preset
+    from texlab_core.documents.preset_store import export_preset
+    from texlab_core.documents.presets import Preset
 
     params = methods()["heeger-bergen"].params.from_json({"scales": 2, "iterations": 7})
     path = tmp_path / "seven.json"

@@ -9,14 +9,14 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QComboBox, QFileDialog, QToolButton, QWidget
 
 from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
-from texlab.controller import Controller
-from texlab.preset_manager import PresetManager
-from texlab.session import Column, Sample, Session, State
-from texlab.theme import ThemeSource
-from texlab.views.preset_bar import PresetBar
-from texlab.views.preset_dialog import PresetDialog
-from texlab_core.presets import Preset, read_preset, write_preset
-from texlab_core.registry import find_method
+from texlab.presets.bar import PresetBar
+from texlab.presets.dialog import PresetDialog
+from texlab.presets.manager import PresetManager
+from texlab.runs.controller import Controller
+from texlab.state.session import Column, Sample, Session, State
+from texlab.style.theme import ThemeSource
+from texlab_core.documents.presets import Preset, read_preset, write_preset
+from texlab_core.engine.registry import find_method
 
 pytestmark = pytest.mark.usefixtures("stub")
 LEFT = Qt.MouseButton.LeftButton
@@ -124,7 +124,7 @@ class Bench:
 @pytest.fixture
 def bench(qtbot, texlab_home, monkeypatch):
     monkeypatch.setattr(
-        "texlab.preset_manager.bundled_presets", lambda method: [paper()] if method == "stub" else []
+        "texlab.presets.manager.bundled_presets", lambda method: [paper()] if method == "stub" else []
     )
     made = Bench(qtbot, texlab_home)
     yield made

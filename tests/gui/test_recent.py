@@ -1,6 +1,6 @@
 """The last few values, and keys by identity."""
 
-from texlab.recent import Recent, Same
+from texlab.docks.recent import Recent, Same
 
 
 def test_values_are_made_once_and_the_oldest_go():

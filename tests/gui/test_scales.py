@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab.scales import LINEAR_PART, POSITIONS, Scale, box_step, decimals
-from texlab_core.params import Field, Knob, describe
-from texlab_core.registry import methods
+from texlab.form.scales import LINEAR_PART, POSITIONS, Scale, box_step, decimals
+from texlab_core.engine.params import Field, Knob, describe
+from texlab_core.engine.registry import methods
 
 
 def number(low, high, kind="float", default=None, **knob):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
-from texlab.explaining.band_bars import BandBars, Bar
-from texlab.explaining.patch_grid import Patch, PatchGrid
-from texlab.theme import DARK, LIGHT
+from texlab.docks.explain.band_bars import BandBars, Bar
+from texlab.docks.explain.patch_grid import Patch, PatchGrid
+from texlab.style.theme import DARK, LIGHT
 
 BARS = (
     Bar("high", "", 0.02, 0.01, "high-pass residual"),

@@ -14,14 +14,11 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QKeySequence
 
 from tests.gui.conftest import drag, move, wait_idle
-from texlab.docks.thresholds import ThresholdsDock
-from texlab.form import ParameterForm
-from texlab.session import Session
-from texlab.theme import DARK, LIGHT
-from texlab.thresholds import knob
-from texlab.thresholds.distance_view import SCALE, Distances
-from texlab.thresholds.selection import Selection
-from texlab.thresholds.table import (
+from texlab.docks.thresholds import knob
+from texlab.docks.thresholds.distance_view import SCALE, Distances
+from texlab.docks.thresholds.dock import ThresholdsDock
+from texlab.docks.thresholds.selection import Selection
+from texlab.docks.thresholds.table import (
     Axes,
     KnownAxes,
     SoftLog,
@@ -32,10 +29,13 @@ from texlab.thresholds.table import (
     moved,
     table_field,
 )
-from texlab_core.methods.de_bonet import DeBonetParams
-from texlab_core.multiresolution.distances import feature_distances
-from texlab_core.multiresolution.thresholds import ThresholdTable
-from texlab_core.registry import methods
+from texlab.form.form import ParameterForm
+from texlab.state.session import Session
+from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.registry import methods
+from texlab_core.methods.de_bonet.distances import feature_distances
+from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier

@@ -13,16 +13,16 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
 
 from tests.gui.conftest import drag, handle_point, hb, ids, result_image, wait_idle
-from texlab_core.images import as_exemplar
-from texlab_core.registry import methods
-from texlab_core.run import Job, run
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from texlab.explorer import Explorer
-    from texlab.session import Column
+    from texlab.app.explorer import Explorer
+    from texlab.state.session import Column
 
 
 def expected(texture: Any, column: Column, size: tuple[int, int] = (48, 48), seed: int = 5) -> Any:
@@ -313,7 +313,7 @@ def test_themes_reach_palette_panes_and_docks(qtbot: Any, explorer: Explorer) ->
 
 
 def test_command_palette_finds_and_runs(qtbot: Any, explorer: Explorer) -> None:
-    from texlab.views.palette import CommandPalette
+    from texlab.window.palette import CommandPalette
 
     qtbot.keyClick(explorer.window, Qt.Key.Key_K, Qt.KeyboardModifier.ControlModifier)
     palette = explorer.window.findChild(CommandPalette)
@@ -396,7 +396,7 @@ def test_help_opens_the_page_of_the_method(qtbot: Any, explorer: Explorer) -> No
 
 
 def test_a_map_is_laid_over_the_picture(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> None:
-    from texlab.colouring import colour_map
+    from texlab.style.colouring import colour_map
 
     explorer = open_window(str(texture), [("de-bonet", texlab_params("de-bonet"))])
     (column_id,) = ids(explorer)
@@ -412,7 +412,7 @@ def test_a_map_is_laid_over_the_picture(qtbot: Any, open_window: Callable[..., E
 
 
 def texlab_params(method: str) -> Any:
-    from texlab_core.registry import methods
+    from texlab_core.engine.registry import methods
 
     return methods()[method].params()
 

@@ -43,9 +43,9 @@ def test_it_holds_every_file_and_no_other(wheel: Path) -> None:
 def run_from(place: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run ``texlab`` as found in ``place``, in another folder."""
     code = (
-        "import sys, texlab_core, texlab.cli\n"
+        "import sys, texlab_core, texlab.cli.main\n"
         f"assert texlab_core.__file__.startswith({str(place)!r}), texlab_core.__file__\n"
-        "sys.exit(texlab.cli.main(sys.argv[1:]))"
+        "sys.exit(texlab.cli.main.main(sys.argv[1:]))"
     )
     environment = os.environ | {"PYTHONPATH": str(place), "NUMBA_CACHE_DIR": str(folder / "numba")}
     return subprocess.run(

@@ -1,4 +1,4 @@
-"""The tabs below the images: one file each, found by :func:`dock_classes`."""
+"""The tabs below the images: a file or a folder each, found by :func:`dock_classes`."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ if TYPE_CHECKING:
 
 
 def dock_classes() -> tuple[type[Dock], ...]:
-    """Import every file of this package and return its dock classes by their order."""
+    """Import every file of this package and return its docks, the classes with a name, by their order."""
     from texlab.docks.base import Dock
 
     found: list[type[Dock]] = []
-    for each in pkgutil.iter_modules(__path__):
-        module = importlib.import_module(f"{__name__}.{each.name}")
+    for each in pkgutil.walk_packages(__path__, f"{__name__}."):
+        module = importlib.import_module(each.name)
         found += [
             value
             for value in vars(module).values()
             if isinstance(value, type)
             and issubclass(value, Dock)
-            and value is not Dock
             and value.__module__ == module.__name__
+            and "name" in vars(value)
         ]
     return tuple(sorted(found, key=lambda dock: (dock.order, dock.name)))

@@ -8,8 +8,8 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QToolTip, QWidget
 
 if TYPE_CHECKING:
-    from texlab.scene import Question, Scene
-    from texlab.theme import Theme
+    from texlab.state.scene import Question, Scene
+    from texlab.style.theme import Theme
 
 
 class Dock(QWidget):

@@ -9,13 +9,13 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from texlab.colouring import SEQUENTIAL_TABLE
-from texlab.dock_frame import FramedDock, replace_items
-from texlab.recent import Same
-from texlab.scene import Question
+from texlab.docks.frame import FramedDock, replace_items
+from texlab.docks.recent import Same
+from texlab.state.scene import Question
+from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.plots import SERIES, Plot, number
-from texlab_core.steps import Curve
+from texlab_core.engine.steps import Curve
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtGui import QResizeEvent
 
-    from texlab.scene import ColumnScene, Scene
-    from texlab.theme import Theme
+    from texlab.state.scene import ColumnScene, Scene
+    from texlab.style.theme import Theme
     from texlab_core.transforms.steerable import BandKey
 
 MEAN = "mean-distance"

@@ -19,18 +19,18 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from texlab import colouring
-from texlab.dock_frame import FramedDock, replace_items
-from texlab.recent import Same
-from texlab.scene import Question
+from texlab.docks.frame import FramedDock, replace_items
+from texlab.docks.recent import Same
+from texlab.state.scene import Question
+from texlab.style import colouring
 from texlab.widgets.plots import ColourBar, PicturePane, number, pg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.scene import Picture, Scene
-    from texlab.theme import Theme
-    from texlab_core.steps import Map
+    from texlab.state.scene import Picture, Scene
+    from texlab.style.theme import Theme
+    from texlab_core.engine.steps import Map
 
 REGIONS_LISTED = 12
 

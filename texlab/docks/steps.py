@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
 
-from texlab.dock_frame import FramedDock
-from texlab.recent import Same
-from texlab.scene import Question
+from texlab.docks.frame import FramedDock
+from texlab.docks.recent import Same
+from texlab.state.scene import Question
 from texlab.widgets.plots import PicturePane
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from PySide6.QtGui import QHideEvent, QKeyEvent
 
-    from texlab.scene import Frame, Scene
-    from texlab.theme import Theme
+    from texlab.state.scene import Frame, Scene
+    from texlab.style.theme import Theme
 
 SPEEDS = ((1, "1 per second"), (2, "2 per second"), (4, "4 per second"), (10, "10 per second"))
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
-from texlab.jobs import Worker
+from texlab.runs.worker import Worker
 from texlab.storage.kept_exemplar import has_no_home, keep, kept_path
 from texlab.storage.kept_inputs import forget_others, keep_inputs, kept_folder
 from texlab.storage.settings import session_to_json
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from texlab.session import Sample, Session, State
+    from texlab.state.session import Sample, Session, State
     from texlab.storage.settings import Settings
-    from texlab_core.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput
 
 log = logging.getLogger(__name__)
 

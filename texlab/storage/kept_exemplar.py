@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab.paths import config_dir
+from texlab.storage.paths import config_dir
 from texlab_core.errors import InputError
-from texlab_core.files import write_whole
+from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from texlab.session import Sample
-    from texlab_core.inputs import ImageInput
-    from texlab_core.steps import FloatImage
+    from texlab.state.session import Sample
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import FloatImage
 
 FILE_NAME = "exemplar.npy"
 
@@ -73,7 +73,7 @@ def load(kept: Kept) -> ImageInput:
     InputError
         When it is not there any more or damaged.
     """
-    from texlab_core.images import as_exemplar
+    from texlab_core.images.exemplar import as_exemplar
 
     try:
         pixels = np.load(kept.path, allow_pickle=False)

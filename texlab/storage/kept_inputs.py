@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab.paths import config_dir
 from texlab.storage.kept_exemplar import compact
+from texlab.storage.paths import config_dir
+from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
 from texlab_core.errors import InputError
-from texlab_core.files import write_whole
-from texlab_core.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
+from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.inputs import Input
+    from texlab_core.engine.inputs import Input
 
 log = logging.getLogger(__name__)
 

@@ -6,20 +6,20 @@ import json
 import logging
 from typing import TYPE_CHECKING, Any
 
-from texlab.paths import config_dir
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
+from texlab.storage.paths import config_dir
+from texlab_core.engine.registry import EXEMPLAR, methods
+from texlab_core.engine.run import check_seed, check_size
 from texlab_core.errors import InputError
-from texlab_core.files import write_whole
-from texlab_core.registry import EXEMPLAR, methods
-from texlab_core.run import check_seed, check_size
+from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.session import Column, State
-    from texlab_core.inputs import Input
-    from texlab_core.params import Params
-    from texlab_core.registry import Method
+    from texlab.state.session import Column, State
+    from texlab_core.engine.inputs import Input
+    from texlab_core.engine.params import Params
+    from texlab_core.engine.registry import Method
 
     # Method, parameters, further inputs and the column's own size.
     SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, int] | None]

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from texlab.colouring import paint
+from texlab.style.colouring import paint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtGui import QKeyEvent, QPaintEvent
 
-    from texlab.theme import Theme
+    from texlab.style.theme import Theme
 
 ARROWS = {
     Qt.Key.Key_Left: (0, -1),

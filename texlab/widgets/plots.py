@@ -10,9 +10,9 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from texlab.theme import configure_pyqtgraph
-from texlab.views.image_pane import ImagePane
-from texlab.views.view_link import ViewLink
+from texlab.style.theme import configure_pyqtgraph
+from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from PySide6.QtCore import QObject
     from PySide6.QtGui import QPaintEvent, QResizeEvent
 
-    from texlab.scene import Picture
-    from texlab.theme import Theme
+    from texlab.state.scene import Picture
+    from texlab.style.theme import Theme
 
 pg = configure_pyqtgraph()
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from texlab_core.errors import InputError
 from texlab_core.figures import encode, figures
-from texlab_core.files import write_whole
+from texlab_core.files.whole import write_whole
 
 
 def main() -> int:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.images import as_exemplar
-from texlab_core.inputs import Crop
-from texlab_core.registry import find_method
-from texlab_core.run import Job, run
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import Job, run
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.sheets.contact_sheet import Tile, contact_sheet
 
 if TYPE_CHECKING:
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import FloatImage, Result
     from texlab_core.sheets.sweep import Cell
-    from texlab_core.steps import FloatImage, Result
 
 PAGE_WIDTH = 712
 _GAP = 8

@@ -14,7 +14,7 @@ from texlab_core.sheets.sweep_recipes import find_sweep
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from texlab_core.steps import FloatImage, Result
+    from texlab_core.engine.steps import FloatImage, Result
 
 TEXTURES = ("structured-scales", "letters-scattered", "stochastic-gravel")
 WORKS = ("structured-shingle", "quasiperiodic-knit", "oriented-zebra", "structured-scales")

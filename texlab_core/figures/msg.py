@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from texlab_core.engine.registry import find_method
 from texlab_core.figures import Figure
 from texlab_core.figures._charts import heat_table, stack
 from texlab_core.figures._tools import make, page, texture, title_of
-from texlab_core.registry import find_method
 from texlab_core.sheets.comparison import FIG_8, compare, plan
 from texlab_core.sheets.contact_sheet import Tile
 

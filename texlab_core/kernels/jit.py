@@ -34,7 +34,7 @@ def _choose_cache_directory() -> None:
         return
     import platformdirs
 
-    from texlab_core.run import versions
+    from texlab_core.engine.run import versions
 
     # By version: an index of another version may name types that are gone, and would not load.
     folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / versions()["texlab"]

@@ -1,1 +1,4 @@
-"""One file per synthesis method; each registers itself with ``texlab_core.registry.register``."""
+"""The synthesis methods: a file each, or a folder whose ``method.py`` (or ``method_*.py``, one each) declares it.
+
+Each registers itself with :func:`texlab_core.engine.registry.register`.
+"""

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.inputs import exemplar_of
-from texlab_core.params import Params
-from texlab_core.registry import Method, register
-from texlab_core.steps import Map, Output, Step
+from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.params import Params
+from texlab_core.engine.registry import Method, register
+from texlab_core.engine.steps import Map, Output, Step
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from texlab_core.inputs import Inputs
-    from texlab_core.run import Streams
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.run import Streams
+    from texlab_core.engine.steps import FloatImage
 
 _PIXELS_AT_ONCE = 2**18
 
@@ -37,7 +37,7 @@ def synthesize(
     model: FloatImage, inputs: Inputs, params: PixelsParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Draw every pixel uniformly and independently, all channels together."""
-    from texlab_core.stats.copying import continuous_share
+    from texlab_core.measures.copying import continuous_share
 
     height, width, channels = model.shape
     count = size[0] * size[1]

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from texlab_core.inputs import exemplar_of
-from texlab_core.params import Knob, Params
-from texlab_core.registry import Method, register
-from texlab_core.steps import Map, Output, Step
+from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import Method, register
+from texlab_core.engine.steps import Map, Output, Step
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from numpy.typing import NDArray
 
-    from texlab_core.inputs import Inputs
-    from texlab_core.run import Streams
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.run import Streams
+    from texlab_core.engine.steps import FloatImage
 
 _PIXELS_AT_ONCE = 2**19
 
@@ -43,7 +43,7 @@ def synthesize(
     model: FloatImage, inputs: Inputs, params: TilingParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Repeat the exemplar from the top left corner on."""
-    from texlab_core.stats.copying import continuous_share
+    from texlab_core.measures.copying import continuous_share
 
     rows = _repeated(size[0], model.shape[0], params.mirror)
     columns = _repeated(size[1], model.shape[1], params.mirror)

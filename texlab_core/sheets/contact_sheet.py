@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.steps import FloatImage
 
 MAX_SHEET_PIXELS = 64 * 2**20
 LARGEST_CELL = 512

@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from texlab_core import strict_json
+from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
+from texlab_core.engine.params import frozen_mapping
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import Job, check_seed, check_size
 from texlab_core.errors import InputError, RecipeError
-from texlab_core.formats.png_text import SIGNATURE, read_text
-from texlab_core.inputs import Crop, ImageInput, exemplar_of
-from texlab_core.params import frozen_mapping
-from texlab_core.registry import find_method
-from texlab_core.resources import resource
-from texlab_core.run import Job, check_seed, check_size
+from texlab_core.files import strict_json
+from texlab_core.files.resources import resource
+from texlab_core.images.formats.png_text import SIGNATURE, read_text
 from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from texlab_core.params import Params
+    from texlab_core.engine.params import Params
 
 FORMAT = "texlab-sweep"
 VERSION = 1
@@ -71,7 +71,7 @@ class ExemplarChoice:
 
     def load(self) -> ImageInput:
         """Return the exemplar; raises ``InputError`` when it cannot be read, or has another hash."""
-        from texlab_core.images import as_exemplar
+        from texlab_core.images.exemplar import as_exemplar
 
         found = as_exemplar(self.name, scale=self.scale, crop=self.crop)
         if self.sha256 not in ("", found.sha256):

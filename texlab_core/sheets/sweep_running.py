@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from texlab_core.engine.run import AnalysisCache, Job, run
 from texlab_core.errors import Cancelled, InputError
-from texlab_core.run import AnalysisCache, Job, run
 from texlab_core.sheets.sweep import Cell, Sweep
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.steps import MapKind, Output, Step
+    from texlab_core.engine.steps import MapKind, Output, Step
 
 _POLL_S = 0.01
 
@@ -200,7 +200,7 @@ class _Turn:
 
 def evidence_of(result: Output) -> tuple[float | None, float | None]:
     """Return the share of copied neighbours and the median candidate count, None where there is no such map."""
-    from texlab_core.stats.copying import continuous_share
+    from texlab_core.measures.copying import continuous_share
 
     source = _first_map(result, "source")
     copied = None if source is None else continuous_share(source)

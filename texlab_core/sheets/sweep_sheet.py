@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from texlab_core.registry import find_method
+from texlab_core.engine.registry import find_method
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.sheets.sweep import show
 
@@ -91,9 +91,9 @@ def write_sheet(
     InputError
         When the sheet would be too large, or cannot be written.
     """
-    from texlab_core.files import write_whole
-    from texlab_core.formats.writing import encode_png
-    from texlab_core.run import versions
+    from texlab_core.engine.run import versions
+    from texlab_core.files.whole import write_whole
+    from texlab_core.images.formats.writing import encode_png
     from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
     across = sheet_columns(sweep) if columns is None else columns

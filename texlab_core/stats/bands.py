@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from texlab_core.stats import filter_bands
-from texlab_core.tasks import go_on
 from texlab_core.transforms import gaussian, laplacian, steerable
 from texlab_core.transforms.steerable import BandKey
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.stats.pyramid_kinds import PyramidKind
-    from texlab_core.steps import FloatImage
 
 Span = Literal["signed", "positive", "gray"]
 COLLAPSIBLE: tuple[PyramidKind, ...] = ("steerable", "laplacian")
@@ -114,7 +114,7 @@ def projection(exemplar: FloatImage, channel: Channel) -> Projection:
     if channel in CHANNELS[1:4]:
         weights = np.eye(3)[CHANNELS.index(channel) - 1]
         return Projection(weights, 0.0, weights)
-    from texlab_core.color import principal_axes
+    from texlab_core.transforms.colour import principal_axes
 
     axes = principal_axes(exemplar)
     number = CHANNELS.index(channel) - 4

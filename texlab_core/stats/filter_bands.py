@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from texlab_core.tasks import go_on
 from texlab_core.transforms import gaussian, oriented, spots_bars, steerable
 from texlab_core.transforms.filters import level_size
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

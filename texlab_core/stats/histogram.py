@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.tasks import finish, row_blocks
+from texlab_core.work.tasks import finish, row_blocks
 
 if TYPE_CHECKING:
-    from texlab_core.tasks import Task
+    from texlab_core.work.tasks import Task
 
 Sample = NDArray[np.float32]
 

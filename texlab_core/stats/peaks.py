@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.spectral.bank import CENTRES_U, CENTRES_V, WIDTHS
+from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V, WIDTHS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,14 +16,14 @@ import numpy as np
 import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
-from texlab_core.tasks import finish, go_on, row_blocks
-from texlab_core.threads import workers
 from texlab_core.transforms import fourier
+from texlab_core.work.tasks import finish, go_on, row_blocks
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab_core.steps import FloatImage
+    from texlab_core.engine.steps import FloatImage
 
 Plane: TypeAlias = NDArray[np.float32]
 Floats: TypeAlias = NDArray[np.float64]

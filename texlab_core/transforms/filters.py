@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.tasks import row_blocks
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab_core.tasks import Task
+    from texlab_core.work.tasks import Task
 
 Size = tuple[int, int]
 Mask = NDArray[Any]

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.tasks import finish, row_blocks
-from texlab_core.threads import workers
+from texlab_core.work.tasks import finish, row_blocks
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from texlab_core.tasks import Task
+    from texlab_core.work.tasks import Task
 
 # A transform of so many samples takes about 10 ms; a larger one is cut into rows, then columns.
 LARGE = 2**21

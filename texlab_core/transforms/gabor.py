@@ -13,7 +13,8 @@ import numpy as np
 import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
-from texlab_core.spectral.bank import (
+from texlab_core.transforms import fourier
+from texlab_core.transforms.gabor_bank import (
     CENTRE_FREQUENCIES,
     CENTRES_U,
     CENTRES_V,
@@ -25,9 +26,8 @@ from texlab_core.spectral.bank import (
     mirrored,
     power_profile,
 )
-from texlab_core.tasks import finish, go_on, row_blocks
-from texlab_core.threads import workers
-from texlab_core.transforms import fourier
+from texlab_core.work.tasks import finish, go_on, row_blocks
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

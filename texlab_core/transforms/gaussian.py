@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 
 import numpy as np
 
-from texlab_core.tasks import go_on
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

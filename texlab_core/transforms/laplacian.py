@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from texlab_core.tasks import go_on
 from texlab_core.transforms.gaussian import Border, Expansion, FloatT, expand, reduce
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

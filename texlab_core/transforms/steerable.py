@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.tasks import finish, go_on, row_blocks
 from texlab_core.transforms import filters, fourier
 from texlab_core.transforms.filters import Size, level_size, spectrum_size
+from texlab_core.work.tasks import finish, go_on, row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from texlab_core.tasks import Task
+    from texlab_core.work.tasks import Task
 
 Plane = NDArray[Any]
 Spectrum = NDArray[Any]

@@ -1,0 +1,202 @@
+"""Puts the parts of the running program together: session, controller, window."""
+
+from __future__ import annotations
+
+import logging
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, QTimer
+
+from texlab.app.crash import CrashHandler
+from texlab.app.memory import memory_text
+from texlab.columns.overlays import Overlays
+from texlab.columns.workspace import Workspace
+from texlab.docks import dock_classes
+from texlab.docks.editors import register_editors
+from texlab.docks.host import DockHost
+from texlab.presets.manager import PresetManager
+from texlab.runs.controller import Controller
+from texlab.runs.slots import Slots
+from texlab.state.session import Column, Session, State
+from texlab.storage.autosave import Autosave
+from texlab.storage.settings import columns_from_json, seed_and_size
+from texlab.window.exchange import Exchange
+from texlab.window.gallery_thumbnails import Thumbnails
+from texlab.window.handlers import Handlers
+from texlab.window.help_desk import HelpDesk
+from texlab.window.opener import Choice, Opener, is_document, last_exemplar
+from texlab.window.presenter import Presenter
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.registry import methods
+from texlab_core.sheets.comparison import FIRST_SIGHT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from texlab.columns.column import ColumnView
+    from texlab.docks.base import Dock
+    from texlab.storage.settings import Settings
+    from texlab.style.theme import ThemeSource
+    from texlab.window.main_window import MainWindow
+
+log = logging.getLogger(__name__)
+
+FIRST_TEXTURE = "gallery:structured-pebbles"
+FIRST_CROP = Crop(16, 16, 128, 128)
+MEMORY_MS = 2000
+
+
+class Explorer(QObject):
+    """The running program behind the window."""
+
+    def __init__(self, window: MainWindow, settings: Settings, themes: ThemeSource) -> None:
+        super().__init__(window)
+        self.window = window
+        self.settings = settings
+        self.themes = themes
+        self.session = Session(self)
+        self.controller = Controller(self.session, themes, self)
+        self.opener = Opener(self.session, self.controller, settings, lambda path: self.presets.import_file(path))
+        self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
+        self.autosave = Autosave(self.session, settings, self)
+        self.crash = CrashHandler(self)
+        self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
+        self.overlays = Overlays(self.workspace.columns, self)
+        register_editors()
+        dock_slots = Slots(1)
+        self.docks: list[Dock] = [make() for make in dock_classes()]
+        self.hosts = [DockHost(dock, dock_slots, self) for dock in self.docks]
+        self.exchange = Exchange(window, settings, self.controller, self.opener)
+        self.desk = HelpDesk(window, self.session)
+        self.handlers = Handlers(window, self.workspace, self.controller, self.opener, self.exchange, self.desk)
+        self.presenter = Presenter(
+            window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
+        )
+        self._closed = False
+        self._memory = QTimer(self)
+        self._memory.setInterval(MEMORY_MS)
+        self._memory.timeout.connect(lambda: window.memory_label.setText(memory_text()))
+        window.set_workspace(self.workspace)
+        window.add_docks(self.docks)
+        self.presenter.show_theme(themes.theme)
+        self._connect()
+        self.thumbnails = Thumbnails(window.gallery, self)
+        self.crash.install()
+        if settings.problem:
+            log.warning(settings.problem)
+            window.message_bar.tell(settings.problem, "problem")
+        self._memory.start()
+
+    # Start.
+
+    def start(self, source: str | None, *, columns: Sequence[tuple[Any, ...]] | None = None) -> None:
+        """Fill the window: the given image, or the last session, or the first texture."""
+        saved = self.settings.values.get("session")
+        tell = partial(self.window.message_bar.tell, kind="problem")
+        chosen = columns or columns_from_json(saved, tell) or first_columns()
+        seed, size = seed_and_size(saved)
+        made = tuple(Column(place + 1, *each) for place, each in enumerate(chosen))
+        self.session.apply(State(None, made, seed, size, len(made) + 1), "start")
+        place = saved.get("selected", 0) if isinstance(saved, dict) else 0
+        place = place if isinstance(place, int) and 0 <= place < len(made) else 0
+        self.handlers.select(made[place].id)
+        self.session.reset_history()
+        self._open_first(source, saved)
+
+    def _open_first(self, source: str | None, saved: Any) -> None:
+        choices = [*last_exemplar(saved), Choice(FIRST_TEXTURE, FIRST_CROP, 1.0)]
+        if source is not None and is_document(source):
+            # A code or a preset goes into a column; the exemplar is the last one.
+            self.opener.open(source)
+        elif source is not None and source.startswith("gallery:"):
+            choices.insert(0, Choice(source, FIRST_CROP, 1.0))
+        elif source is not None:
+            choices.insert(0, Choice(source))
+        self.opener.open_first_of(choices)
+
+    def close(self) -> None:
+        """Remember the session and stop every thread."""
+        if self._closed:
+            return
+        self._closed = True
+        self._memory.stop()
+        self.handlers.close()
+        self.window.remember_geometry()
+        # Nobody has to watch the threads come to their end.
+        self.window.hide()
+        self.controller.leave()
+        for host in self.hosts:
+            host.leave()
+        self.autosave.close()
+        for host in self.hosts:
+            host.close()
+        self.thumbnails.close()
+        self.overlays.close()
+        self.controller.close()
+        self.crash.remove()
+        self.desk.close()
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is computed and every visible dock has its answer."""
+        waiting = self.controller.busy or any(host.busy for host in self.hosts)
+        return not waiting and self.session.state.sample is not None
+
+    # Wiring.
+
+    def _connect(self) -> None:
+        window, session, controller, presenter = self.window, self.session, self.controller, self.presenter
+        window.dropped.connect(self.opener.open)
+        window.closing.connect(self.close)
+        window.gallery.chosen.connect(self.opener.open)
+        self._connect_controls()
+        session.changed.connect(lambda *_: presenter.show_session())
+        session.history_changed.connect(presenter.show_session)
+        session.selected.connect(lambda _: presenter.show_session())
+        controller.scene_changed.connect(presenter.show_scene)
+        controller.exemplar_ready.connect(presenter.show_exemplar)
+        controller.marks_changed.connect(presenter.show_marks)
+        controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
+        controller.open_wanted.connect(self.opener.open)
+        controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
+        presenter.recent_chosen.connect(self.opener.open)
+        self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
+        self.themes.changed.connect(lambda _: presenter.show_theme(self.themes.theme))
+        self.workspace.column_made.connect(self._connect_column)
+        for dock in self.docks:
+            dock.intention.connect(lambda act: act(controller))
+
+    def _connect_controls(self) -> None:
+        """Connect what the user turns and drags."""
+        window, session, controller, turn = self.window, self.session, self.controller, self.handlers.turn
+        window.seed_box.valueChanged.connect(lambda seed: turn("seed", partial(session.set_seed, seed)))
+        for box in (window.width_box, window.height_box):
+            box.valueChanged.connect(lambda _: turn("size", partial(session.set_size, window.size_shown)))
+        parameters = window.parameters
+        parameters.edited.connect(controller.edit_params)
+        parameters.reset_wanted.connect(controller.reset_params)
+        parameters.help_wanted.connect(self.desk.show_help)
+        parameters.dock_wanted.connect(window.raise_dock)
+        exemplar = self.workspace.exemplar
+        exemplar.crop_changed.connect(controller.edit_crop)
+        exemplar.scale_changed.connect(lambda scale: turn("scale", partial(controller.edit_scale, scale)))
+        exemplar.hovered.connect(self.presenter.say_exemplar_pixel)
+
+    def _connect_column(self, view: ColumnView) -> None:
+        controller = self.controller
+        view.chosen.connect(self.session.select)
+        view.method_chosen.connect(self.handlers.choose_method)
+        view.run_wanted.connect(controller.run_column)
+        view.stop_wanted.connect(controller.stop_column)
+        view.command.connect(self.handlers.column_command)
+        view.hovered.connect(self.presenter.say_column_pixel)
+        view.hovered.connect(controller.point_at)
+        view.pixel_clicked.connect(controller.pin)
+        view.map_chosen.connect(self.overlays.choose)
+
+
+def first_columns() -> list[tuple[str, Any]]:
+    """Return the columns of a first start."""
+    known = methods()
+    return [(name, known[name].params()) for name in FIRST_SIGHT]

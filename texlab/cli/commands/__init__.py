@@ -1,0 +1,12 @@
+"""One file per command of ``texlab``; a file whose name starts with an underscore is none.
+
+A command is a module with
+
+- ``HELP``: one line for the list of commands,
+- ``ORDER``: its place in that list,
+- ``configure(parser)``: adds its arguments to a :class:`texlab.cli.main.Parser`,
+- ``execute(args)``: does it and returns the exit code; raises ``InputError`` or ``OSError``
+  for what the user can mend.
+
+What costs time to import is imported inside ``execute``.
+"""

@@ -1,0 +1,106 @@
+"""Options that several commands share, checked before any work starts."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from texlab_core.errors import InputError, ParamError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from texlab_core.engine.inputs import Crop
+
+NumberT = TypeVar("NumberT", int, float)
+
+
+def parse_size(text: str, name: str = "size") -> tuple[int, int]:
+    """Return (height, width) from ``WxH``; raises ``ParamError``."""
+    found = re.fullmatch(r"([0-9]{1,9})[xX×]([0-9]{1,9})", text.strip())
+    if found is None or "0" in (found[1].lstrip("0") or "0", found[2].lstrip("0") or "0"):
+        raise ParamError(name, "width and height as in 256x192", text)
+    return int(found[2]), int(found[1])
+
+
+def parse_crop(text: str) -> Crop:
+    """Return the rectangle from ``WxH+X+Y``; raises ``ParamError``."""
+    found = re.fullmatch(r"([0-9]{1,9}[xX×][0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())
+    if found is None:
+        raise ParamError("crop", "width, height, left and top as in 256x192+10+20", text)
+    from texlab_core.engine.inputs import Crop
+
+    height, width = parse_size(found[1], "crop")
+    return Crop(top=int(found[3]), left=int(found[2]), height=height, width=width)
+
+
+def parse_settings(texts: Sequence[str]) -> dict[str, str]:
+    """Return the names and values of ``--set name=value``; raises ``InputError``."""
+    settings: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip().replace("-", "_")
+        if not equals or not name:
+            raise ParamError("set", "a name and a value as in iterations=5", text)
+        if name in settings:
+            raise InputError(f"{name} is set twice.")
+        settings[name] = value
+    return settings
+
+
+def parse_number(name: str, text: str, kind: type[NumberT]) -> NumberT:
+    """Return the number that a text stands for; raises ``ParamError``. Whoever takes it checks its range."""
+    try:
+        return kind(text)
+    except ValueError:
+        raise ParamError(name, "a whole number" if kind is int else "a number", text) from None
+
+
+def output_file(text: str) -> Path:
+    """Return the path of a file that can be written.
+
+    Raises
+    ------
+    InputError
+        When it is a folder, or its folder is missing or cannot be written to.
+    """
+    path = Path(text)
+    if path.is_dir():
+        raise InputError(f"{text} is a folder, and a file is wanted.")
+    _check_writable(path.parent)
+    return path
+
+
+def output_folder(text: str) -> Path:
+    """Return the path of a folder that can be written to, made if need be; raises ``InputError``."""
+    path = Path(text)
+    if not text:
+        raise InputError("The name of the folder is empty.")
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{text} is a file, and a folder is wanted.")
+    _check_writable(path if path.exists() else path.parent)
+    try:
+        path.mkdir(exist_ok=True)
+    except ValueError as error:
+        raise InputError(f"{text!r} is no name for a folder ({error}).") from error
+    return path
+
+
+def refuse_overwriting(out: Path, source: str) -> None:
+    """Raise ``InputError`` when writing ``out`` would destroy the image that the result is made from."""
+    if out.exists() and os.path.exists(source) and os.path.samefile(out, source):
+        raise InputError(f"{out} is what the result is made from; choose another file for --out.")
+
+
+def _check_writable(folder: Path) -> None:
+    if not folder.is_dir():
+        raise InputError(f"The folder {folder} does not exist.")
+    try:
+        # The only question that every system answers truthfully.
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be written to ({error.strerror}).") from error

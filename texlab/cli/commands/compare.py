@@ -1,0 +1,101 @@
+"""``texlab compare``: several methods on one exemplar, side by side on one sheet."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from texlab.cli.commands._options import output_file, parse_crop, parse_number, parse_size, refuse_overwriting
+from texlab.cli.commands._progress import share_bar
+from texlab.cli.terminal import interrupted
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from texlab.cli.main import Parser
+    from texlab_core.sheets.comparison import Compared
+
+HELP = "Run several methods on one exemplar and save them side by side."
+ORDER = 16
+NOTES = """
+without --methods:               heeger-bergen,de-bonet,msg,efros-leung
+--same-phase without --methods:  uncoded,msg,car,ac-h, with one random phase for all (the MSG paper's Fig. 8)
+"""
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.epilog = NOTES
+    parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar")
+    parser.add_argument("--methods", metavar="A,B,C", help="ids from texlab methods, separated by commas")
+    parser.add_argument("--out", required=True, metavar="SHEET.png", help="file to write")
+    parser.add_argument("--same-phase", action="store_true", help="one seed, and so one random phase, for all")
+    parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
+    parser.add_argument("--seed", default="0", metavar="N", help="of the first method; the others count on")
+    parser.add_argument("--columns", metavar="N", help="pictures in a row (default: one row up to six)")
+    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
+    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Check everything, run the methods, save the sheet, report."""
+    from texlab_core.errors import ParamError
+
+    size = None if args.size is None else parse_size(args.size)
+    seed = parse_number("seed", args.seed, int)
+    columns = None if args.columns is None else parse_number("columns", args.columns, int)
+    if columns is not None and columns < 1:
+        raise ParamError("columns", "a whole number from 1", columns)
+    scale = parse_number("scale", args.scale, float)
+    crop = None if args.crop is None else parse_crop(args.crop)
+    out = output_file(args.out)
+    if out.suffix.lower() != ".png":
+        raise ParamError("out", "a file name that ends in .png", args.out)
+    refuse_overwriting(out, args.image)
+
+    from texlab_core.files.whole import write_whole
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.images.formats.writing import encode_png
+    from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
+    from texlab_core.sheets.contact_sheet import check_sheet, series_columns
+
+    if args.methods is None:
+        names: Sequence[str] = FIG_8 if args.same_phase else FIRST_SIGHT
+    else:
+        names = [name.strip() for name in args.methods.split(",")]
+    exemplar = as_exemplar(args.image, scale=scale, crop=crop)
+    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase)
+    cells = len(jobs) + 1
+    check_sheet(cells, columns or series_columns(cells), jobs[0].size)
+    with share_bar(f"{len(jobs)} methods") as show:
+        compared = compare(jobs, on_progress=show, should_stop=interrupted)
+    write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))
+    report(compared, out, as_json=args.json)
+    return 0
+
+
+def report(compared: Sequence[Compared], out: Path, *, as_json: bool) -> None:
+    """Print what was made: one JSON object, or a line for each method."""
+    if not as_json:
+        for each in compared:
+            print(f"{each.job.method}, seed {each.job.seed}: {each.error or '; '.join(each.caption()[1:])}")
+        print(f"{out}: {len(compared)} methods")
+        return
+    answer: dict[str, Any] = {"out": str(out), "methods": [_as_json(each) for each in compared]}
+    print(json.dumps(answer, allow_nan=False))
+
+
+def _as_json(each: Compared) -> dict[str, Any]:
+    done = each.result is not None
+    return {
+        "method": each.job.method,
+        "seed": each.job.seed,
+        "numbers": each.parameters,
+        "log_spectral_distance_db": each.distance if done else None,
+        "total_variation": each.variation if done else None,
+        "elapsed_s": each.result.elapsed_s if each.result is not None else None,
+        "error": each.error or None,
+    }

@@ -1,0 +1,59 @@
+"""``texlab encode``: a texture as a code of 69 numbers, from which ``texlab synth`` makes any amount of it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from texlab.cli.commands._options import output_file, parse_crop, parse_number, refuse_overwriting
+from texlab.cli.commands._sources import CODE_SUFFIX, is_code
+from texlab_core.errors import ParamError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from texlab.cli.main import Parser
+
+HELP = "Save a texture as a code of 69 numbers (MSG)."
+ORDER = 17
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the texture")
+    parser.add_argument("--out", required=True, metavar="X.msg.json", help="file to write")
+    parser.add_argument(
+        "--bandwidths",
+        choices=("participation", "paper"),
+        default="participation",
+        help="how bandwidths are measured (default participation)",
+    )
+    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
+    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Measure and save."""
+    if not is_code(args.out):
+        raise ParamError("out", f"a file name that ends in {CODE_SUFFIX}", args.out)
+    scale = parse_number("scale", args.scale, float)
+    crop = None if args.crop is None else parse_crop(args.crop)
+    out = output_file(args.out)
+    refuse_overwriting(out, args.image)
+
+    from texlab_core.engine.progress import finish
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.methods.spectral.codefile import code_to_json, write_code
+    from texlab_core.methods.spectral.encoding import encode
+
+    exemplar = as_exemplar(args.image, scale=scale, crop=crop)
+    code, _ = finish(encode(exemplar.pixels, args.bandwidths))
+    write_code(code, out, exemplar.name)
+    if args.json:
+        answer = {"out": str(out), "numbers": code.parameters, "code": code_to_json(code, exemplar.name)}
+        print(json.dumps(answer, allow_nan=False))
+    else:
+        beyond = "" if code.tone.colours is None else ", 44 of them for the colours, beyond the paper"
+        print(f"{out}: {exemplar.name} in {code.parameters} numbers{beyond}.")
+    return 0

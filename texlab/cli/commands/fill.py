@@ -1,0 +1,113 @@
+"""``texlab fill``: fill the holes of an image, or grow it outward, with the texture around."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from texlab.cli.commands._options import parse_number, parse_settings, parse_size, refuse_overwriting
+from texlab.cli.commands.synth import BITS, add_output_options, check_outputs, described, make, summary_of
+from texlab_core.errors import InputError
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from texlab.cli.main import Parser
+    from texlab_core.engine.inputs import ImageInput, Input
+
+HELP = "Fill the holes of an image, or grow it outward, with the texture around."
+ORDER = 12
+METHOD = "efros-leung"
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the image to fill")
+    parser.add_argument("--mask", metavar="MASK", help="image of the same size: what is not black is filled")
+    parser.add_argument("--transparent", action="store_true", help="fill what is transparent in IMAGE")
+    parser.add_argument("--size", metavar="WxH", help="grow the image outward to this size")
+    parser.add_argument(
+        "--exemplar", metavar="IMAGE|gallery:NAME", help="copy from this image, not from IMAGE itself"
+    )
+    parser.add_argument("--region", metavar="MASK", help="as large as the exemplar: copy only what is not black")
+    add_output_options(parser)
+    parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
+    parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    parser.more_help = _knobs
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Check everything, fill, save, report."""
+    from texlab_core.engine.registry import find_method
+
+    if args.mask is not None and args.transparent:
+        raise InputError("Give either --mask or --transparent.")
+    if args.mask is None and not args.transparent and args.size is None:
+        raise InputError("There is nothing to fill: give --mask, --transparent or a larger --size.")
+    base = None
+    if args.preset is not None:
+        from texlab.cli.commands.presets import own_presets
+        from texlab_core.documents.preset_store import find_preset
+
+        base = find_preset(args.preset, own_presets(), METHOD).params()
+    params = find_method(METHOD).params.parse(parse_settings(args.set), base)
+    size = None if args.size is None else parse_size(args.size)
+    seed = parse_number("seed", args.seed, int)
+    outputs = check_outputs(args, BITS[args.bits or "8"])
+    sources = [each for each in (args.image, args.mask, args.exemplar, args.region) if each is not None]
+    for each in sources:
+        refuse_overwriting(outputs.image, each)
+
+    from texlab_core.engine.run import Job
+
+    inputs, image = _inputs(args)
+    job = Job(method=METHOD, inputs=inputs, params=params, size=size or image.size, seed=seed)
+    result = make(job, outputs, keep=sources)
+    print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
+    return 0
+
+
+def _inputs(args: argparse.Namespace) -> tuple[dict[str, Input], ImageInput]:
+    """Return the inputs of the job, and the image to fill."""
+    from texlab_core.images.exemplar import as_exemplar
+
+    image = as_exemplar(args.image)
+    inputs: dict[str, Input] = {"exemplar": image if args.exemplar is None else as_exemplar(args.exemplar)}
+    if args.exemplar is not None or (args.mask is None and not args.transparent):
+        inputs["start"] = image
+    # What is transparent in a mask is not marked.
+    if args.mask is not None:
+        inputs["mask"] = as_exemplar(args.mask, background=0.0)
+    elif args.transparent:
+        inputs["mask"] = transparent_part(args.image)
+    if args.region is not None:
+        inputs["region"] = as_exemplar(args.region, background=0.0)
+    return inputs, image
+
+
+def transparent_part(source: str) -> ImageInput:
+    """Return a mask of what is not opaque in an image; raises ``InputError`` when it has no transparency."""
+    import numpy as np
+
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.images.formats.reading import read_image
+
+    if source.startswith("gallery:"):
+        raise InputError(f"{source} has no transparency; give --mask.")
+    decoded = read_image(Path(source), source)
+    if decoded.values.shape[2] not in (2, 4):
+        raise InputError(f"{source} has no transparency; give --mask.")
+    opaque = 1.0 if decoded.peak is None else decoded.peak
+    marked = decoded.values[..., -1] < opaque
+    return as_exemplar(marked.astype(np.uint8) * np.uint8(255), name=f"what is transparent in {Path(source).name}")
+
+
+def _knobs(_: Sequence[str]) -> str:
+    """Return the parameters of the method, for the help."""
+    from texlab.cli.commands.methods import knobs
+    from texlab_core.engine.registry import find_method
+
+    return knobs(find_method(METHOD)) + "\n"

@@ -1,0 +1,128 @@
+"""``texlab redo``: make a saved result again, from its file alone."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from texlab.cli.commands._options import refuse_overwriting
+from texlab.cli.commands.synth import Outputs, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.terminal import complain
+from texlab_core.errors import InputError, ParamError, RecipeError
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Mapping
+
+    from texlab.cli.main import Parser
+    from texlab_core.documents.recipe import Recipe
+    from texlab_core.images.formats.decoded import Decoded
+    from texlab_core.images.formats.writing import Bits
+
+HELP = "Make a saved result again, from the recipe inside it."
+ORDER = 15
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("result", metavar="RESULT.png", help="a result that TexLab saved")
+    parser.add_argument("--exemplar", metavar="IMAGE", help="the exemplar, where the file does not hold it")
+    parser.add_argument(
+        "--input",
+        action="append",
+        default=[],
+        metavar="NAME=IMAGE",
+        help="another image that the file does not hold, as in start=wall.jpg",
+    )
+    add_output_options(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Read the recipe, follow it, compare."""
+    from texlab_core.documents.record import read_recipe
+
+    recipe = read_recipe(args.result)
+    before = _pixels(args.result)
+    outputs = check_outputs(args, _bits(args, before))
+    given = _given(args)
+    for image in given.values():
+        refuse_overwriting(outputs.image, image)
+    _check_missing(args.result, recipe, given)
+    result = make(recipe.job(given=given), outputs, keep=tuple(given.values()))
+    same = _same_bits(before, outputs)
+    if args.json:
+        print(json.dumps(summary_of(result, outputs) | {"same_bits": same}))
+    else:
+        print(described(result, outputs))
+        if same:
+            print(f"  The same bits as in {args.result}.")
+    if same is False:
+        complain(_difference(args.result, recipe))
+    return 0
+
+
+def _given(args: argparse.Namespace) -> dict[str, str]:
+    """Return the images that were named, by the role they have in the recipe."""
+    given = {} if args.exemplar is None else {"exemplar": args.exemplar}
+    for text in args.input:
+        role, equals, image = text.partition("=")
+        if not equals or not role or not image:
+            raise ParamError("input", "a name and an image as in start=wall.jpg", text)
+        if role in given:
+            raise InputError(f"The input {role} is given twice.")
+        given[role] = image
+    return given
+
+
+def _check_missing(name: str, recipe: Recipe, given: Mapping[str, str]) -> None:
+    """Raise ``RecipeError`` when the file lacks an input that was not given either."""
+    held = {recipe.inputs[role].sha256 for role in given if role in recipe.inputs}
+    for each in recipe.missing:
+        if each.role in given or each.sha256 in held:
+            continue
+        option = "--exemplar" if each.role == "exemplar" else f"--input {each.role}=IMAGE"
+        remedy = f"; give it with {option}." if each.kind == "image" else ", and cannot be made again without it."
+        raise RecipeError(f"{name} does not hold {each.described}{remedy}")
+
+
+def _pixels(path: str) -> Decoded | None:
+    """Return the saved image; None for one whose format loses bits, or a recipe without an image."""
+    from texlab_core.images.formats.reading import read_image
+
+    if Path(path).suffix.lower() not in (".png", ".tif", ".tiff"):
+        return None
+    return read_image(Path(path), path)
+
+
+def _bits(args: argparse.Namespace, before: Decoded | None) -> Bits:
+    """Return the depth that was asked for, else that of the result when the new file can hold it."""
+    from texlab_core.images.formats.writing import check_format
+
+    bits: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
+    if args.bits is not None:
+        return bits[args.bits]
+    if before is None:
+        return 8
+    depth: Bits = {255: 8, 65535: 16}.get(before.peak, "float")  # type: ignore[assignment, arg-type]
+    try:
+        check_format(args.out, depth)
+    except ValueError:
+        return 8
+    return depth
+
+
+def _same_bits(before: Decoded | None, outputs: Outputs) -> bool | None:
+    """Return whether old and new file hold the same pixels; None when their formats cannot be compared."""
+    import numpy as np
+
+    after = _pixels(str(outputs.image))
+    if before is None or after is None or before.peak != after.peak:
+        return None
+    return bool(np.array_equal(before.values, after.values))
+
+
+def _difference(name: str, recipe: Recipe) -> str:
+    changed = [f"{library} {then} then, {today} here" for library, (then, today) in recipe.other_versions.items()]
+    why = f"the versions differ ({'; '.join(changed)})" if changed else "the image was changed after it was saved"
+    return f"The result is not bit for bit that of {name}: {why}."

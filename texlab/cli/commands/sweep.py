@@ -1,0 +1,160 @@
+"""``texlab sweep``: one or two knobs over ranges, as a contact sheet."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from texlab.cli.commands._options import (
+    output_file,
+    parse_crop,
+    parse_number,
+    parse_settings,
+    parse_size,
+    refuse_overwriting,
+)
+from texlab.cli.commands._progress import share_bar
+from texlab.cli.terminal import interrupted, logged_quietly
+
+if TYPE_CHECKING:
+    import argparse
+
+    from texlab.cli.main import Parser
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.sheets.sweep import Cell, Sweep
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
+
+HELP = "Vary one or two parameters and save a contact sheet."
+ORDER = 15
+EXAMPLES = """
+a range of six values, evenly:        --vary alpha=0.05:0.3:6
+a range of five in even ratios:       --vary alpha=0.01:1:5:log
+a list:                               --vary border=reflect,periodic
+variations:                           --vary seed=1:12:12
+two parameters, across and down:      --vary alpha=0.1,0.2 --vary beta=0,1
+a ready-made sweep, or an old sheet:  --recipe de-bonet-fig-11, --recipe SHEET.png
+"""
+
+
+def configure(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.epilog = EXAMPLES
+    parser.add_argument("image", nargs="?", metavar="IMAGE|gallery:NAME", help="the exemplar")
+    parser.add_argument("--method", metavar="ID", help="one of texlab methods")
+    parser.add_argument(
+        "--vary", action="append", default=[], metavar="NAME=FROM:TO:COUNT[:log]", help="see below"
+    )
+    parser.add_argument("--out", required=True, metavar="SHEET.png", help="file to write; carries the recipe")
+    parser.add_argument("--recipe", metavar="NAME|FILE", help="start from a ready-made sweep, a file or a sheet")
+    parser.add_argument("--preset", metavar="NAME|FILE", help="start from the parameters of a preset")
+    parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
+    parser.add_argument("--seed", metavar="N", help="the same seed gives the same bits (default 0)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    parser.add_argument("--scale", metavar="S", help="reduce the image first, 0 < S <= 1")
+    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Check everything, run the cells, save the sheet, report."""
+    from texlab_core.errors import ParamError
+    from texlab_core.sheets.contact_sheet import check_sheet
+    from texlab_core.sheets.sweep_running import run_sweep
+    from texlab_core.sheets.sweep_sheet import sheet_columns, write_sheet
+
+    out = output_file(args.out)
+    if out.suffix.lower() != ".png":
+        raise ParamError("out", "a file name that ends in .png", args.out)
+    largest = parse_number("cell", args.cell, int)
+    if not 64 <= largest <= 512:
+        raise ParamError("cell", "a whole number from 64 to 512", largest)
+    recipe, exemplar = plan(args)
+    source = args.image or (recipe.exemplar.name if recipe.exemplar else "")
+    refuse_overwriting(out, source)
+    sweep = recipe.sweep(exemplar)
+    check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.size, largest)
+    with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
+        cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
+    write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
+    report(sweep, cells, str(out), as_json=args.json)
+    return 0
+
+
+def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
+    """Return what is to be done and with which exemplar; what is named on the command line comes first."""
+    import dataclasses
+
+    from texlab.cli.commands.presets import own_presets
+    from texlab_core.documents.preset_store import find_preset
+    from texlab_core.engine.registry import find_method
+    from texlab_core.errors import InputError
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.sheets.sweep import Vary
+    from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
+
+    recipe = None if args.recipe is None else find_sweep(args.recipe)
+    preset = None if args.preset is None else find_preset(args.preset, own_presets(), args.method)
+    chosen = args.method or (preset and preset.method) or (recipe and recipe.method)
+    if not chosen:
+        raise InputError("A sweep needs a method: say --method ID, --preset NAME or --recipe NAME.")
+    method = find_method(chosen)
+    if recipe is not None and recipe.method != method.id:
+        raise InputError(f"The sweep {recipe.name} is for the method {recipe.method}, not for {method.id}.")
+    params = method.params() if recipe is None else recipe.params
+    params = params if preset is None else preset.params(params)
+    params = method.params.parse(parse_settings(args.set), params)
+    axes = tuple(Vary.parse(text, method.params) for text in args.vary) or (recipe.axes if recipe else ())
+    if not axes:
+        raise InputError("A sweep varies one or two knobs: say --vary NAME=FROM:TO:COUNT or --recipe NAME.")
+    base = SweepRecipe(name="sweep", method=method.id, axes=axes) if recipe is None else recipe
+    changes: dict[str, Any] = {"axes": axes, "parameters": params.to_json()}
+    if args.size is not None:
+        changes["size"] = parse_size(args.size)
+    if args.seed is not None:
+        changes["seed"] = parse_number("seed", args.seed, int)
+    if args.image is not None:
+        scale = 1.0 if args.scale is None else parse_number("scale", args.scale, float)
+        crop = None if args.crop is None else parse_crop(args.crop)
+        return dataclasses.replace(base, **changes), as_exemplar(args.image, scale=scale, crop=crop)
+    if base.exemplar is None:
+        raise InputError("A sweep needs an exemplar: name an image or gallery:NAME.")
+    choice = dataclasses.replace(
+        base.exemplar,
+        sha256=base.exemplar.sha256 if args.scale is None and args.crop is None else "",
+        scale=base.exemplar.scale if args.scale is None else parse_number("scale", args.scale, float),
+        crop=base.exemplar.crop if args.crop is None else parse_crop(args.crop),
+    )
+    return dataclasses.replace(base, **changes), choice.load()
+
+
+def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) -> None:
+    """Print what was made: one JSON object, or a line for each cell."""
+    if not as_json:
+        for cell in cells:
+            print(f"{cell.label}{f': {cell.error}' if cell.error else ''}")
+        failed = sum(bool(cell.error) for cell in cells)
+        print(f"{out}: {len(cells)} cells{f', {failed} failed' if failed else ''}")
+        return
+    base = sweep.base
+    exemplar: Any = base.inputs["exemplar"]
+    answer = {
+        "method": base.method,
+        "parameters": base.params.to_json(),
+        "size": {"width": base.size[1], "height": base.size[0]},
+        "seed": base.seed,
+        "vary": [{"name": axis.name, "values": list(axis.values)} for axis in sweep.axes],
+        "out": out,
+        "exemplar": {"name": exemplar.name, "sha256": exemplar.sha256},
+        "cells": [
+            {
+                "values": dict(cell.values),
+                "copied": cell.copied,
+                "candidates": cell.candidates,
+                "elapsed_s": None if cell.result is None else cell.result.elapsed_s,
+                "error": cell.error or None,
+            }
+            for cell in cells
+        ],
+    }
+    print(json.dumps(answer, default=lambda value: value.to_json(), allow_nan=False))

@@ -1,0 +1,146 @@
+"""What the command line says on standard error, and how Ctrl-C ends it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import FrameType
+
+_PATIENCE_S = 0.3
+_RETRY_S = 0.02
+_SHOW_CURSOR = "\x1b[?25h"
+INTERRUPTED = 130
+
+
+def complain(sentence: str, program: str = "texlab") -> None:
+    """Print one line on standard error; nowhere when that is closed or full.
+
+    What would move the cursor or change colours, in the name of a file say, is shown as an escape.
+    """
+    line = "".join(each if each.isprintable() else ascii(each)[1:-1] for each in sentence)
+    if sys.stderr is None:
+        return
+    try:
+        print(f"{program}: {line}", file=sys.stderr, flush=True)
+    except (OSError, ValueError):
+        # Python would try again when it ends, fail, and change the exit code.
+        with contextlib.suppress(OSError, ValueError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stderr.fileno())
+            os.close(nowhere)
+
+
+def append_to_log(text: str) -> None:
+    """Write a dated entry to the log file; raises ``OSError`` when that is not possible."""
+    import datetime
+
+    from texlab.storage.paths import log_file
+    from texlab_core.version import __version__
+
+    log = log_file()
+    log.parent.mkdir(parents=True, exist_ok=True)
+    when = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+    with log.open("a", encoding="utf-8", errors="backslashreplace") as file:
+        file.write(f"{when} texlab {__version__}\n{text}\n")
+
+
+@contextlib.contextmanager
+def logged_quietly() -> Iterator[None]:
+    """Within the block, what the core logs goes to the log file, not to the terminal."""
+    import logging
+
+    class LogFile(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            with contextlib.suppress(OSError):
+                append_to_log(self.format(record))
+
+    handler, core = LogFile(), logging.getLogger("texlab_core")
+    core.addHandler(handler)
+    try:
+        yield
+    finally:
+        core.removeHandler(handler)
+
+
+@dataclass
+class _Interruption:
+    """Whether Ctrl-C was pressed, and whether the work has learnt of it."""
+
+    pressed: bool = False
+    heard: bool = False
+
+
+_interruption = _Interruption()
+
+
+def interrupted() -> bool:
+    """Return whether Ctrl-C was pressed: what commands give to the core as ``should_stop``."""
+    _interruption.heard |= _interruption.pressed
+    return _interruption.pressed
+
+
+@contextlib.contextmanager
+def orderly_interrupts() -> Iterator[None]:
+    """Within the block, Ctrl-C makes :func:`interrupted` true, and raises ``KeyboardInterrupt`` if nobody asks.
+
+    It is never raised where it would be lost: while modules are imported or code is compiled, C libraries turn it
+    into errors of their own. A second Ctrl-C ends the process at once; no file is half written then, because all
+    are renamed into place.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the latest at the end of the block.
+    """
+    ours = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
+    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield
+        return
+    state = _interruption
+    state.pressed = state.heard = False
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if number == signal.SIGINT and state.pressed:
+            _end_at_once()
+        if number == signal.SIGALRM and (state.heard or not _would_be_lost(frame)):
+            if not state.heard:
+                raise KeyboardInterrupt
+            return
+        signal.signal(signal.SIGALRM, interrupt)
+        signal.setitimer(signal.ITIMER_REAL, _RETRY_S if state.pressed else _PATIENCE_S)
+        state.pressed = True
+
+    signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        pressed, state.pressed = state.pressed, False
+        # While Python shuts down it has nothing left to do in good order.
+        signal.signal(signal.SIGINT, signal.SIG_DFL if pressed else signal.default_int_handler)
+        if pressed:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            raise KeyboardInterrupt
+
+
+def _would_be_lost(frame: FrameType | None) -> bool:
+    while frame is not None:
+        module = frame.f_globals.get("__name__") or ""
+        if module.partition(".")[0] == "llvmlite" or frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _end_at_once() -> None:
+    if sys.stderr is not None and sys.stderr.isatty():
+        # The progress bar hides it.
+        os.write(sys.stderr.fileno(), _SHOW_CURSOR.encode())
+    os._exit(INTERRUPTED)

@@ -1,0 +1,1 @@
+"""The exemplar and the columns of results beside it."""

@@ -1,0 +1,272 @@
+"""One method's column: what it is, its picture, how far it is, and its buttons."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QActionGroup
+from PySide6.QtWidgets import (
+    QDoubleSpinBox,
+    QFrame,
+    QHBoxLayout,
+    QMenu,
+    QProgressBar,
+    QToolButton,
+    QVBoxLayout,
+)
+
+from texlab.durations import duration, remaining
+from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.short_box import ShortBox
+from texlab.widgets.status_line import SEPARATOR, StatusLine, strut
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from PySide6.QtGui import QAction, QContextMenuEvent, QFocusEvent, QMouseEvent
+    from PySide6.QtWidgets import QWidget
+
+    from texlab.state.scene import ColumnScene
+    from texlab.style.theme import Theme
+    from texlab.widgets.view_link import ViewLink
+
+_SIGNS = {
+    "idle": "",
+    "waiting": "waits for a core",
+    "running": "",
+    "finished": "",
+    "cancelled": "stopped",
+    "failed": "",
+}
+
+
+class ColumnView(QFrame):
+    """Shows a :class:`ColumnScene`; every wish of the user leaves as a signal with the column's id."""
+
+    chosen = Signal(int)
+    method_chosen = Signal(int, str)
+    run_wanted = Signal(int)
+    stop_wanted = Signal(int)
+    command = Signal(int, str)
+    hovered = Signal(int, int, int)
+    pixel_clicked = Signal(int, int, int)
+    map_chosen = Signal(int, str)
+
+    COMMANDS = (
+        ("go-on", "Go on from here"),
+        ("duplicate", "Duplicate column"),
+        ("left", "Move left"),
+        ("right", "Move right"),
+        ("export", "Save result as PNG ..."),
+        ("copy", "Copy picture"),
+        ("use", "Use result as exemplar"),
+        ("remove", "Remove column"),
+    )
+
+    def __init__(
+        self, column_id: int, methods: Iterable[tuple[str, str]], link: ViewLink, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.column_id = column_id
+        self.scene: ColumnScene | None = None
+        self.setObjectName("column")
+        self.setProperty("chosen", False)
+        self.setProperty("failed", False)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMinimumWidth(140)
+        self.method_box = ShortBox()
+        self.method_box.setObjectName(f"method-{column_id}")
+        self.method_box.setAccessibleName("Method of this column")
+        self.method_box.setToolTip("The method of this column")
+        for identifier, title in methods:
+            self.method_box.addItem(title, identifier)
+        self.run_button = self._button("▶", "Run this column again", "run")
+        self.stop_button = self._button("■", "Stop this column", "stop")
+        self.menu_button = self._button("⋯", "More for this column", "menu")
+        self.menu = QMenu(self)
+        self.actions_by_name: dict[str, QAction] = {}
+        for name, text in self.COMMANDS:
+            action = self.menu.addAction(text)
+            action.setObjectName(f"column-{name}-{column_id}")
+            action.triggered.connect(lambda _=False, name=name: self.command.emit(self.column_id, name))
+            self.actions_by_name[name] = action
+        self.menu.addSeparator()
+        self.map_menu = self.menu.addMenu("Lay a map over the picture")
+        self.map_menu.setObjectName(f"maps-{column_id}")
+        self.map_group = QActionGroup(self)
+        self._maps: tuple[object, ...] = ()
+        self.menu_button.setMenu(self.menu)
+        self.menu_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu_button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
+        self.pane = ImagePane(link, self)
+        self.pane.setObjectName(f"pane-{column_id}")
+        self.progress = QProgressBar()
+        self.progress.setObjectName(f"progress-{column_id}")
+        self.progress.setRange(0, 1000)
+        self.progress.setTextVisible(False)
+        self.line = StatusLine()
+        self.line.setObjectName(f"line-{column_id}")
+        self.stop_button.hide()
+        buttons = QHBoxLayout()
+        buttons.setSpacing(2)
+        buttons.addWidget(self.progress, 1, Qt.AlignmentFlag.AlignVCenter)
+        for button in (self.run_button, self.stop_button, self.menu_button):
+            buttons.addWidget(button)
+        # The row is as high as that of the exemplar.
+        crop = QToolButton()
+        crop.setText("Crop")
+        for model in (QDoubleSpinBox(), crop):
+            buttons.addWidget(strut(model))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.setSpacing(3)
+        layout.addWidget(self.method_box)
+        layout.addWidget(self.pane, 1)
+        layout.addLayout(buttons)
+        layout.addWidget(self.line)
+        self.method_box.activated.connect(
+            lambda place: self.method_chosen.emit(self.column_id, self.method_box.itemData(place))
+        )
+        self.run_button.clicked.connect(lambda: self.run_wanted.emit(self.column_id))
+        self.stop_button.clicked.connect(lambda: self.stop_wanted.emit(self.column_id))
+        self.pane.clicked.connect(self._pane_clicked)
+        self.pane.hovered.connect(lambda row, column: self.hovered.emit(self.column_id, row, column))
+
+    def _button(self, text: str, tip: str, name: str) -> QToolButton:
+        button = QToolButton()
+        button.setText(text)
+        button.setToolTip(tip)
+        button.setAccessibleName(tip)
+        button.setAutoRaise(True)
+        button.setObjectName(f"{name}-{self.column_id}")
+        return button
+
+    def _pane_clicked(self, row: int, column: int) -> None:
+        self.chosen.emit(self.column_id)
+        if row >= 0:
+            self.pixel_clicked.emit(self.column_id, row, column)
+
+    def show_scene(self, scene: ColumnScene) -> None:
+        """Show the state of the column; only what differs is touched."""
+        before, self.scene = self.scene, scene
+        if before is None or before.method != scene.method:
+            with QSignalBlocker(self.method_box):
+                self.method_box.setCurrentIndex(self.method_box.findData(scene.method))
+        if before is None or before.picture is not scene.picture:
+            self.pane.set_picture(scene.picture)
+        self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
+        self.line.show_parts(status_parts(scene))
+        failed = scene.status == "failed"
+        self.pane.set_note(scene.message if failed and scene.picture is None else "")
+        role = "error" if failed else "muted"
+        if self.line.property("role") != role:
+            self.line.setProperty("role", role)
+            _polish(self.line)
+        busy = scene.status in ("running", "waiting")
+        self.stop_button.setVisible(busy)
+        self.run_button.setVisible(not busy)
+        self.actions_by_name["go-on"].setEnabled(scene.resumable and not busy)
+        for name in ("export", "use"):
+            self.actions_by_name[name].setEnabled(scene.result is not None)
+        self.actions_by_name["copy"].setEnabled(scene.picture is not None)
+        self._set_flag("failed", failed)
+
+    def show_maps(self, maps: tuple[tuple[str, str], ...], chosen: str) -> None:
+        """Offer the maps (name, title) as overlays."""
+        if (maps, chosen) == self._maps:
+            return
+        self._maps = (maps, chosen)
+        self.map_menu.clear()
+        self.map_menu.setEnabled(bool(maps))
+        for name, title in (("", "None"), *maps):
+            action = self.map_menu.addAction(title)
+            action.setObjectName(f"map-{name or 'none'}-{self.column_id}")
+            action.setCheckable(True)
+            action.setChecked(name == chosen)
+            action.setActionGroup(self.map_group)
+            action.triggered.connect(lambda _=False, name=name: self.map_chosen.emit(self.column_id, name))
+
+    def set_chosen(self, chosen: bool) -> None:
+        """Frame the chosen column."""
+        self._set_flag("chosen", chosen)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.pane.set_theme(theme)
+
+    def _set_flag(self, name: str, value: bool) -> None:
+        if self.property(name) != value:
+            self.setProperty(name, value)
+            _polish(self)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Choose the column."""
+        super().mousePressEvent(event)
+        self.chosen.emit(self.column_id)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        """Choose the column."""
+        super().focusInEvent(event)
+        self.chosen.emit(self.column_id)
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Show the column's menu."""
+        self.chosen.emit(self.column_id)
+        self.menu.popup(event.globalPos())
+
+
+def status_line(scene: ColumnScene) -> str:
+    """Return what is said under a column's picture, as one line."""
+    return SEPARATOR.join(status_parts(scene))
+
+
+def status_parts(scene: ColumnScene) -> list[str]:
+    """Return what is said under a column's picture."""
+    if scene.status == "failed":
+        return [scene.message]
+    parts = []
+    sign = scene.message if scene.status == "waiting" and scene.message else _SIGNS[scene.status]
+    if sign:
+        parts.append(sign)
+    if scene.status == "cancelled" and scene.resumable:
+        parts.append("F6 goes on")
+    if scene.draft and scene.status in ("running", "finished"):
+        parts.append("draft")
+    if scene.status == "running" and scene.message:
+        parts.append(scene.message)
+    if scene.status == "running" and scene.elapsed_s > 1.0 and 0.02 < scene.fraction < 1:
+        left = scene.elapsed_s * (1 - scene.fraction) / scene.fraction
+        parts.append(f"about {remaining(left)} left" if left >= 1 else "almost done")
+    if scene.status == "finished" and scene.result is not None:
+        height, width = scene.result.image.shape[:2]
+        parts += [f"{width} x {height}", duration(scene.elapsed_s)]
+        if any(name == "code" for name, _ in scene.inputs):
+            parts.append("from a code, not the exemplar")
+        numbers = {**scene.result.measures, **scene.metrics}
+        parts += [format_measure(name, numbers[name]) for name in _MEASURES if name in numbers][:MOST_NUMBERS]
+    return parts
+
+
+MOST_NUMBERS = 3
+# In the order in which they are shown, as far as a result has them.
+_MEASURES = {
+    "parameters": ("numbers", "{:.0f}"),
+    "copied-share": ("copied", "{:.0%}"),
+    "median-candidates": ("candidates", "{:.0f}"),
+    "w1-bands": ("W1 bands", "{:.3f}"),
+    "largest-pole": ("largest pole", "{:.3f}"),
+    "spectral-distance": ("spectrum", "{:.1f} dB"),
+    "spectral-variation": ("power moved", "{:.0%}"),
+}
+
+
+def format_measure(name: str, value: float) -> str:
+    """Return a measure as it is shown under a column."""
+    title, shape = _MEASURES[name]
+    return f"{title} {shape.format(value)}"
+
+
+def _polish(widget: QWidget) -> None:
+    widget.style().unpolish(widget)
+    widget.style().polish(widget)

@@ -1,0 +1,240 @@
+"""The exemplar: the whole scaled source with a crop box, its scale, and its name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pyqtgraph as pg
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QKeyEvent
+from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
+
+from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.short_box import ShortBox
+from texlab.widgets.status_line import StatusLine, strut
+from texlab_core.engine.inputs import Crop
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtGui import QResizeEvent
+    from PySide6.QtWidgets import QWidget
+
+    from texlab.state.scene import Picture
+    from texlab.style.theme import Theme
+    from texlab.widgets.view_link import ViewLink
+
+MIN_CROP = 8
+SETTLE_MS = 300
+_ARROWS = {
+    Qt.Key.Key_Up: (-1, 0),
+    Qt.Key.Key_Down: (1, 0),
+    Qt.Key.Key_Left: (0, -1),
+    Qt.Key.Key_Right: (0, 1),
+}
+_STEPS = {
+    Qt.KeyboardModifier.NoModifier: 1,
+    Qt.KeyboardModifier.ShiftModifier: 1,
+    Qt.KeyboardModifier.ControlModifier: 8,
+}
+
+
+class ExemplarView(QFrame):
+    """Shows the scaled source; the crop box recomputes everything while it is dragged.
+
+    ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source.
+    """
+
+    crop_changed = Signal(object, bool)
+    scale_changed = Signal(float)
+    hovered = Signal(int, int)
+    clicked = Signal(int, int)
+
+    def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("column")
+        self.setMinimumWidth(140)
+        self.title = QLabel("Exemplar")
+        self.title.setObjectName("exemplar-title")
+        self.title.setProperty("role", "heading")
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.crop_button = QToolButton()
+        self.crop_button.setObjectName("crop-toggle")
+        self.crop_button.setText("Crop")
+        self.crop_button.setCheckable(True)
+        self.crop_button.setAutoRaise(False)
+        self.crop_button.setToolTip(
+            "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
+            "with Shift they resize it."
+        )
+        self.scale_box = QDoubleSpinBox()
+        self.scale_box.setObjectName("scale-box")
+        self.scale_box.setAccessibleName("Scale of the exemplar")
+        self.scale_box.setToolTip(
+            "Scale of the picture before it is cropped. Photographs are usually too large for these methods: "
+            "a texture element should be 10 to 40 pixels wide."
+        )
+        self.scale_box.setRange(0.01, 1.0)
+        self.scale_box.setDecimals(3)
+        self.scale_box.setSingleStep(0.05)
+        self.scale_box.setKeyboardTracking(False)
+        self.scale_box.setPrefix("×")
+        self.line = StatusLine()
+        self.line.setObjectName("exemplar-line")
+        self.pane = ImagePane(link, self)
+        self.pane.setObjectName("pane-exemplar")
+        self._box: Any = None
+        self._name = ""
+        self._crop: Crop | None = None
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(SETTLE_MS)
+        self._rest.timeout.connect(self._settle)
+        self.pane.installEventFilter(self)
+        head = QHBoxLayout()
+        head.setSpacing(0)
+        head.addWidget(self.title, 1)
+        # The rows are as high as those of the columns.
+        head.addWidget(strut(ShortBox()))
+        controls = QHBoxLayout()
+        controls.setSpacing(2)
+        controls.addWidget(self.crop_button)
+        controls.addStretch(1)
+        button = QToolButton()
+        button.setText("▶■⋯")
+        controls.addWidget(strut(button))
+        controls.addWidget(self.scale_box)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.setSpacing(3)
+        layout.addLayout(head)
+        layout.addWidget(self.pane, 1)
+        layout.addLayout(controls)
+        layout.addWidget(self.line)
+        self.crop_button.clicked.connect(self._toggle)
+        self.scale_box.valueChanged.connect(self.scale_changed)
+        self.pane.hovered.connect(self.hovered)
+        self.pane.clicked.connect(self.clicked)
+
+    def show_source(self, picture: Picture | None) -> None:
+        """Show the scaled source."""
+        if picture is not self.pane.picture:
+            self.pane.set_picture(picture)
+
+    def show_choice(self, name: str, parts: Sequence[str], scale: float, crop: Crop | None) -> None:
+        """Show name, size and notes, scale and crop without emitting anything."""
+        self._name = name
+        self.title.setToolTip(name)
+        self._elide()
+        self.line.show_parts(parts)
+        with QSignalBlocker(self.scale_box):
+            self.scale_box.setValue(scale)
+        with QSignalBlocker(self.crop_button):
+            self.crop_button.setChecked(crop is not None)
+        self._show_crop(crop)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Shorten the name to the room there is."""
+        super().resizeEvent(event)
+        self._elide()
+
+    def _elide(self) -> None:
+        room = self.title.width()
+        self.title.setText(self.title.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
+
+    def _show_crop(self, crop: Crop | None) -> None:
+        if crop == self._crop and (crop is None) == (self._box is None):
+            return
+        self._crop = crop
+        if crop is None:
+            if self._box is not None:
+                self.pane.view.removeItem(self._box)
+                self._box = None
+            return
+        if self._box is None:
+            self._box = pg.RectROI([0, 0], [1, 1], sideScalers=True, pen=self._pen(), snapSize=1.0)
+            self._box.addScaleHandle([0, 0], [1, 1])
+            self._box.addScaleHandle([1, 0], [0, 1])
+            self._box.addScaleHandle([0, 1], [1, 0])
+            self._box.addScaleHandle([0, 0.5], [1, 0.5])
+            self._box.addScaleHandle([0.5, 0], [0.5, 1])
+            for handle in self._box.getHandles():
+                # pyqtgraph makes these menus without a parent, and nobody would delete them.
+                handle.menu.setParent(self, handle.menu.windowFlags())
+            self._box.sigRegionChanged.connect(lambda: self._dragged(final=False))
+            self._box.sigRegionChangeFinished.connect(lambda: self._dragged(final=True))
+            self.pane.view.addItem(self._box)
+        with QSignalBlocker(self._box):
+            self._box.setPos([crop.left, crop.top], update=False)
+            self._box.setSize([crop.width, crop.height])
+            self._box.stateChanged(finish=False)
+
+    def _pen(self) -> Any:
+        return pg.mkPen(QColor("#ffd54a"), width=2)
+
+    def _toggle(self, on: bool) -> None:
+        picture = self.pane.picture
+        if picture is None:
+            self.crop_button.setChecked(False)
+            return
+        if not on:
+            self.crop_changed.emit(None, True)
+            return
+        height, width = picture.shape[:2]
+        rows, columns = max(height // 2, min(height, MIN_CROP)), max(width // 2, min(width, MIN_CROP))
+        self.crop_changed.emit(Crop((height - rows) // 2, (width - columns) // 2, rows, columns), True)
+
+    def _dragged(self, *, final: bool) -> None:
+        picture = self.pane.picture
+        if picture is None or self._box is None:
+            return
+        height, width = picture.shape[:2]
+        position, size = self._box.pos(), self._box.size()
+        columns = min(max(round(abs(size.x())), MIN_CROP), width)
+        rows = min(max(round(abs(size.y())), MIN_CROP), height)
+        left = min(max(round(position.x()), 0), width - columns)
+        top = min(max(round(position.y()), 0), height - rows)
+        crop = Crop(top, left, rows, columns)
+        if final:
+            # The box itself snaps to what is used once the button is up.
+            self._crop = None
+            self._show_crop(crop)
+        self._crop = crop
+        self.crop_changed.emit(crop, final)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Move and resize the box with the arrow keys."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress and self._crop is not None:
+            down, right = _ARROWS.get(Qt.Key(event.key()), (0, 0))
+            held = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
+            if (down or right) and held in _STEPS:
+                self._nudge(down * _STEPS[held], right * _STEPS[held], held == Qt.KeyboardModifier.ShiftModifier)
+                return True
+        return super().eventFilter(watched, event)
+
+    def _nudge(self, down: int, right: int, resize: bool) -> None:
+        picture, crop = self.pane.picture, self._crop
+        if picture is None or crop is None:
+            return
+        height, width = picture.shape[:2]
+        rows, columns, top, left = crop.height, crop.width, crop.top, crop.left
+        if resize:
+            rows = min(max(rows + down, min(MIN_CROP, height)), height - top)
+            columns = min(max(columns + right, min(MIN_CROP, width)), width - left)
+        else:
+            top = min(max(top + down, 0), height - rows)
+            left = min(max(left + right, 0), width - columns)
+        moved = Crop(top, left, rows, columns)
+        if moved != crop:
+            self._show_crop(moved)
+            # Keys have no release worth waiting for: they settle after a moment.
+            self._rest.start()
+            self.crop_changed.emit(moved, False)
+
+    def _settle(self) -> None:
+        if self._crop is not None:
+            self.crop_changed.emit(self._crop, True)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.pane.set_theme(theme)

@@ -1,0 +1,245 @@
+"""Heeger and Bergen: which subbands built a pixel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from texlab.docks.explain.band_bars import BandBars, Bar
+from texlab.docks.explain.base import Explainer, ExplanationView, never
+from texlab.docks.recent import Recent, Same
+from texlab.style.colouring import diverging
+from texlab.widgets.plots import PicturePane, number, pg
+from texlab_core.errors import Cancelled
+from texlab_core.methods.heeger_bergen.contributions import contributions
+from texlab_core.methods.heeger_bergen.method import Convergence, HeegerBergenParams
+from texlab_core.stats.bands import LUMA, names
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from texlab.state.scene import Picture
+    from texlab.style.theme import Theme
+    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.methods.heeger_bergen.contributions import Contributions
+    from texlab_core.stats.pyramid_kinds import PyramidKind
+    from texlab_core.transforms.steerable import BandKey
+
+CACHE_BYTES = 64 * 2**20
+SPREADS = 3.0
+# Larger pictures than this are sampled: they are shown small.
+MOST_PIXELS = 2**18
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """What built a whole picture.
+
+    Parameters
+    ----------
+    found
+        What every subband adds to every pixel.
+    mean
+        Of the picture's luma.
+    pictures
+        What every subband adds, in colours that part at zero; every ``step``-th pixel along both axes.
+    """
+
+    found: Contributions
+    mean: float
+    pictures: tuple[Picture, ...]
+    step: int
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held."""
+        return self.found.nbytes + sum(picture.nbytes for picture in self.pictures)
+
+
+@dataclass(frozen=True, eq=False)
+class ExplainedPixel:
+    """What built a pixel.
+
+    Parameters
+    ----------
+    pixel
+        Row and column.
+    bars
+        What every subband adds; the residual's is taken from the mean of the picture.
+    value
+        Luma of the pixel.
+    built
+        What built the whole picture.
+    """
+
+    pixel: tuple[int, int]
+    bars: tuple[Bar, ...]
+    value: float
+    built: Built
+
+
+_built = Recent(CACHE_BYTES, lambda built: built.nbytes)
+
+
+def luma(image: FloatImage) -> NDArray[np.float32]:
+    """Return the luma of an image (H, W, C), (H, W) float32."""
+    if image.shape[2] == 1:
+        return np.ascontiguousarray(image[..., 0])
+    return np.ascontiguousarray(image @ np.array(LUMA, np.float32))
+
+
+def take_apart(result: Result, should_stop: Callable[[], bool] = never) -> Built:
+    """Find what built a picture; raises ``Cancelled`` when ``should_stop`` says so."""
+
+    def look() -> None:
+        if should_stop():
+            raise Cancelled
+
+    params = result.job.params
+    assert isinstance(params, HeegerBergenParams)
+    plane = luma(result.image)
+    mean = float(plane.mean(dtype=np.float64))
+    found = contributions(plane, params.pyramid, params.scales, params.orientations, look)
+    step = math.ceil(math.sqrt(plane.size / MOST_PIXELS))
+    pictures = []
+    for index, key in enumerate(found.keys):
+        look()
+        shown = found.plane(index, look)[::step, ::step]
+        shown = shown - np.float32(mean) if key.kind == "lowpass" else shown
+        pictures.append(diverging(shown, SPREADS * float(found.spreads[index]) or 1.0))
+    return Built(found, mean, tuple(pictures), step)
+
+
+def explain_pixel(
+    result: Result, row: int, column: int, should_stop: Callable[[], bool] = never
+) -> ExplainedPixel:
+    """Explain a pixel of a Heeger-Bergen result (in a background thread).
+
+    The first pixel of a result takes the picture apart, which ``should_stop`` can end.
+    """
+    params = result.job.params
+    assert isinstance(params, HeegerBergenParams)
+    built = _built.get(Same(result), lambda: take_apart(result, should_stop))
+    keys = built.found.keys
+    values = built.found.at(row, column)
+    value = float(values.sum())
+    # The residual carries the mean, beside which nothing else could be seen.
+    values = np.where([key.kind == "lowpass" for key in keys], values - built.mean, values)
+    bars = tuple(
+        make_bar(key, float(each), float(spread), params.orientations)
+        for key, each, spread in zip(keys, values, built.found.spreads, strict=True)
+    )
+    return ExplainedPixel((row, column), bars, value, built)
+
+
+def make_bar(key: BandKey, value: float, spread: float, orientations: int) -> Bar:
+    """Return the bar of a subband, grouped by level."""
+    kind: PyramidKind = "laplacian" if key.kind == "bandpass" else "steerable"
+    title, _ = names(key, kind, orientations)
+    group = {"highpass": "high", "lowpass": "low"}.get(key.kind, f"level {key.level}")
+    angle = f"{180 * key.orientation / orientations:.3g}°" if key.kind == "oriented" else ""
+    return Bar(group, angle, value, spread, title)
+
+
+def summary(explained: ExplainedPixel) -> str:
+    """Return what built the pixel, in words."""
+    parts = sorted(explained.bars, key=lambda bar: -abs(bar.value))
+    mean = explained.built.mean
+    strongest = ", ".join(f"{bar.title} {bar.value:+.3f}" for bar in parts[:3])
+    return (
+        f"Luma {explained.value:.3f} = {mean:.3f}, the mean of the picture, {explained.value - mean:+.3f} from "
+        f"the subbands. Most of it: {strongest}. Each of them was made without asking the others."
+    )
+
+
+class HeegerBergenView(ExplanationView):
+    """Bars by level and orientation, and the picture that the chosen one adds."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("explain-heeger-bergen")
+        self._explained: ExplainedPixel | None = None
+        self.bars = BandBars("explain-bars", "What every subband adds to the pixel")
+        self.bars.setToolTip(
+            "What every subband adds to the pixel, or takes from it. Light areas: twice the standard deviation of "
+            "what it adds anywhere. Click a bar to see its picture."
+        )
+        self.bars.chosen.connect(lambda _: self._show_band())
+        self.bars.hovered.connect(self._point)
+        self.title = QLabel()
+        self.title.setObjectName("explain-band-title")
+        self.title.setProperty("role", "muted")
+        self.pane = PicturePane("explain-band", "What the chosen subband adds to every pixel")
+        self.spot = pg.ScatterPlotItem(
+            size=13, symbol="o", brush=None, pxMode=True, pen=pg.mkPen("#000000", width=2)
+        )
+        self.pane.view.addItem(self.spot, ignoreBounds=True)
+        self.words = QLabel()
+        self.words.setObjectName("explain-band-words")
+        self.words.setWordWrap(True)
+        self.words.setAccessibleName("Why the pixel is there")
+        self._beside = QWidget()
+        beside = QVBoxLayout(self._beside)
+        beside.setContentsMargins(0, 0, 0, 0)
+        beside.setSpacing(1)
+        beside.addWidget(self.title)
+        beside.addWidget(self.pane, 1)
+        panes = QHBoxLayout()
+        panes.addWidget(self.bars, 3)
+        panes.addWidget(self._beside, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(6, 0, 6, 4)
+        layout.setSpacing(2)
+        layout.addLayout(panes, 1)
+        layout.addWidget(self.words)
+        self.setFocusProxy(self.bars)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.bars.set_theme(theme)
+        self.pane.set_theme(theme)
+
+    def show_explanation(self, explained: ExplainedPixel) -> None:
+        """Show what built a pixel; the subband that was looked at stays."""
+        self._explained = explained
+        self.bars.show_bars(explained.bars)
+        if self.bars.selected < 0:
+            strongest = max(range(len(explained.bars)), key=lambda index: abs(explained.bars[index].value))
+            self.bars.select(strongest)
+        self._show_band()
+        self._point(-1)
+        self.marks_changed.emit(())
+
+    def _show_band(self) -> None:
+        explained, index = self._explained, self.bars.selected
+        if explained is None or index < 0:
+            return
+        self.title.setText(explained.bars[index].title.capitalize())
+        self.pane.set_picture(explained.built.pictures[index])
+        row, column = explained.pixel
+        step = explained.built.step
+        self.spot.setData([(column + 0.5) / step], [(row + 0.5) / step])
+
+    def _point(self, index: int) -> None:
+        if self._explained is None:
+            return
+        if index < 0:
+            self.words.setText(summary(self._explained))
+            return
+        bar = self._explained.bars[index]
+        self.words.setText(f"{bar.title.capitalize()}: {number(bar.value)}, typically ± {number(bar.spread)}.")
+
+
+EXPLAINER = Explainer(
+    Convergence,
+    explain_pixel,
+    HeegerBergenView,
+    "For Heeger-Bergen: what every subband adds to the pixel, by level and orientation, and the picture of the "
+    "chosen one.",
+)

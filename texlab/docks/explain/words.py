@@ -1,0 +1,68 @@
+"""Lines of text that change often: painted where they are, without a new layout of the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from texlab.style.theme import DARK, LIGHT
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QPaintEvent
+
+    from texlab.style.theme import Theme
+
+Part = tuple[str, str]
+
+
+class Words(QWidget):
+    """Shows parts of text, each in the colour of a role of the theme, in a fixed number of lines."""
+
+    def __init__(self, name: str, label: str, lines: int, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setAccessibleName(label)
+        self._lines = lines
+        self._parts: tuple[Part, ...] = ()
+        self._theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+    def text(self) -> str:
+        """Return what is written."""
+        return "".join(words for words, _ in self._parts)
+
+    def show_parts(self, *parts: Part) -> None:
+        """Write (text, role) parts; only a single part is broken into lines."""
+        if parts != self._parts:
+            self._parts = parts
+            self.setAccessibleDescription(self.text())
+            self.setToolTip(self.text())
+            self.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        """Ask for the lines."""
+        return QSize(100, self._lines * self.fontMetrics().lineSpacing() + 2)
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the height of the hint."""
+        return QSize(40, self.sizeHint().height())
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the parts one after the other."""
+        painter = QPainter(self)
+        area = QRectF(self.rect())
+        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop
+        wrap = int(flags) | int(Qt.TextFlag.TextWordWrap) if len(self._parts) == 1 else int(flags)
+        for words, role in self._parts:
+            painter.setPen(QColor(getattr(self._theme, role)))
+            painter.drawText(area, wrap, words)
+            area.setLeft(area.left() + self.fontMetrics().horizontalAdvance(words))
+        painter.end()

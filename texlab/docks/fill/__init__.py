@@ -1,0 +1,1 @@
+"""Fill a hole or grow a picture by Efros-Leung."""

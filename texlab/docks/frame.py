@@ -1,0 +1,206 @@
+"""What the docks share: a line of controls, a body, a sentence instead of the body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QPalette
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSpinBox,
+    QStackedLayout,
+    QVBoxLayout,
+    QWidget,
+)
+
+from texlab.docks.base import Dock
+from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.flow_layout import FlowLayout
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from texlab.state.scene import ColumnScene
+    from texlab.style.theme import Theme
+    from texlab_core.engine.steps import FloatImage
+
+
+def shown_image(column: ColumnScene | None) -> FloatImage | None:
+    """Return the column's values: the finished result, or the preview while it runs."""
+    if column is None:
+        return None
+    return column.image if column.result is None else column.result.image
+
+
+class FramedDock(Dock):
+    """A dock with a line of controls above its body.
+
+    Subclasses fill ``self.body`` in ``build``, add controls with ``add_...``, show an answer in ``show_answer``
+    and repaint in ``paint_theme``. A ``question`` that returns None leaves its reason in ``self.why``.
+    """
+
+    empty: ClassVar[str] = "Nothing to show yet."
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
+        self.answer: Any = None
+        self.why = ""
+        self.controls = QWidget(self)
+        self.controls.setObjectName(f"{self.name}-controls")
+        self._line = FlowLayout(self.controls)
+        self.body = QWidget()
+        self.body.setObjectName(f"{self.name}-body")
+        self._message = QLabel(self.empty)
+        self._message.setObjectName(f"{self.name}-message")
+        self._message.setProperty("role", "muted")
+        self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._message.setWordWrap(True)
+        pages = QWidget(self)
+        self._stack = QStackedLayout(pages)
+        self._stack.addWidget(self._message)
+        self._stack.addWidget(self.body)
+        pages.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(self.controls)
+        layout.addWidget(pages, 1)
+        self.build()
+        self.paint_theme(self.theme)
+
+    # For subclasses.
+
+    def build(self) -> None:
+        """Make the controls and the body."""
+        raise NotImplementedError
+
+    def show_answer(self, answer: Any) -> None:
+        """Show an answer in the body."""
+        raise NotImplementedError
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give every plot and picture its colours."""
+
+    def ask(self, *_: object) -> None:
+        """Ask again because a control was changed."""
+        self.asks.emit()
+
+    # The contract of docks.
+
+    def present(self, answer: Any) -> None:
+        """Show what ``Question.compute`` returned."""
+        self.answer = answer
+        self._stack.setCurrentWidget(self.body)
+        self.show_answer(answer)
+
+    def present_nothing(self, reason: str) -> None:
+        """Show why there is nothing to show, in one sentence."""
+        self.answer = None
+        self._message.setText(self.why or reason or self.empty)
+        self._stack.setCurrentWidget(self._message)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.theme = theme
+        self.paint_theme(theme)
+
+    @property
+    def message(self) -> str | None:
+        """The sentence that is shown instead of the body, or None."""
+        return self._message.text() if self._stack.currentWidget() is self._message else None
+
+    # Controls.
+
+    def add_control(self, control: QWidget, name: str, label: str, tip: str) -> None:
+        """Put a widget into the line of controls."""
+        control.setObjectName(f"{self.name}-{name}")
+        control.setAccessibleName(label)
+        control.setToolTip(tip)
+        self._line.addWidget(control)
+
+    def add_choice(
+        self, name: str, label: str, tip: str, items: Iterable[tuple[str, Any]], changed: Callable[[], Any]
+    ) -> QComboBox:
+        """Add a list of (text, value); ``changed`` is called when the user chooses."""
+        box = QComboBox()
+        box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+        for text, value in items:
+            box.addItem(text, value)
+        box.activated.connect(lambda _: changed())
+        self.add_control(box, name, label, tip)
+        return box
+
+    def add_number(
+        self, name: str, label: str, tip: str, limits: tuple[int, int], changed: Callable[[], Any]
+    ) -> QSpinBox:
+        """Add a whole number with its label inside the box."""
+        box = QSpinBox()
+        box.setRange(*limits)
+        box.setPrefix(f"{label} ")
+        box.valueChanged.connect(lambda _: changed())
+        self.add_control(box, name, label, tip)
+        return box
+
+    def add_switch(self, name: str, label: str, tip: str, changed: Callable[[bool], Any]) -> QCheckBox:
+        """Add a check box."""
+        box = QCheckBox(label)
+        box.toggled.connect(changed)
+        self.add_control(box, name, label, tip)
+        return box
+
+    def add_button(self, name: str, label: str, tip: str, pressed: Callable[[], Any]) -> QPushButton:
+        """Add a push button."""
+        button = QPushButton(label)
+        button.clicked.connect(lambda _: pressed())
+        self.add_control(button, name, label, tip)
+        return button
+
+    def add_readout(self) -> Readout:
+        """Add the place where the value under the cursor is told, over the body's lower right corner."""
+        return Readout(f"{self.name}-readout", self.body)
+
+
+class Readout(QLabel):
+    """A line of text that lies over a corner of its parent and takes no room in the layout."""
+
+    def __init__(self, name: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._over = parent
+        self.setObjectName(name)
+        self.setAccessibleName("Value under the cursor")
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setAutoFillBackground(True)
+        self.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
+        self.setForegroundRole(QPalette.ColorRole.ToolTipText)
+        self.setMargin(3)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.hide()
+
+    def setText(self, text: str) -> None:
+        """Show a text, or nothing."""
+        super().setText(text)
+        self.setVisible(bool(text))
+        if text:
+            self.adjustSize()
+            area = self._over.rect()
+            self.move(max(0, area.right() - self.width() - 6), area.bottom() - self.height() - 6)
+            self.raise_()
+
+
+def replace_items(box: QComboBox, items: list[tuple[str, Any]]) -> None:
+    """Give a list other items, keeping the chosen one where it still exists, without telling anyone."""
+    if [(box.itemText(place), box.itemData(place)) for place in range(box.count())] == items:
+        return
+    chosen = box.currentData()
+    blocked = box.blockSignals(True)
+    box.clear()
+    for text, value in items:
+        box.addItem(text, value)
+    box.setCurrentIndex(max(0, next((place for place, item in enumerate(items) if item[1] == chosen), 0)))
+    box.blockSignals(blocked)

@@ -1,0 +1,1 @@
+"""One or two knobs over ranges, as a contact sheet."""

@@ -1,0 +1,151 @@
+"""What a sweep is to be: one or two axes, the other parameters, the size of the cells; or a ready-made one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox, QGridLayout, QLabel, QScrollArea, QSizePolicy, QWidget
+
+from texlab.docks.sweeps.axis import AxisChoice, AxisEditor
+from texlab.runs.sweep_run import SweepPlan
+from texlab_core.sheets.sweep import show
+
+if TYPE_CHECKING:
+    from texlab_core.engine.registry import Method
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
+
+SIDES = (64, 96, 128, 192, 256)
+USUAL_SIDE = 128
+WIDTH = 252
+_LABEL = 46
+
+
+class SweepPanel(QScrollArea):
+    """Chooses what is varied, and what all cells share.
+
+    Parameters
+    ----------
+    name
+        Prefix of the object names.
+    """
+
+    def __init__(self, name: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(f"{name}-panel")
+        self._method = ""
+        self._choices: dict[str, tuple[AxisChoice, AxisChoice]] = {}
+        self._recipes: tuple[SweepRecipe, ...] = ()
+        self._recipe: SweepRecipe | None = None
+        self.recipe_box, self.base_box, self.side_box = QComboBox(), QComboBox(), QComboBox()
+        for side in SIDES:
+            self.side_box.addItem(f"{side} x {side}", side)
+        self.side_box.addItem("as the columns", None)
+        self.side_box.setCurrentIndex(SIDES.index(USUAL_SIDE))
+        self.across = AxisEditor(f"{name}-across", "Across", optional=False)
+        self.down = AxisEditor(f"{name}-down", "Down", optional=True)
+        self.error = QLabel("")
+        self.error.setObjectName(f"{name}-error")
+        self.error.setProperty("role", "error")
+        self.error.setWordWrap(True)
+        self.error.hide()
+        inside = QWidget()
+        layout = QGridLayout(inside)
+        layout.setContentsMargins(0, 0, 6, 0)
+        layout.setSpacing(4)
+        tip = "Ready-made sweeps of this method, the papers' figures among them"
+        self._add(layout, 0, "Recipe", self.recipe_box, f"{name}-recipe", tip)
+        layout.addWidget(self.across, 1, 0, 1, 2)
+        layout.addWidget(self.down, 2, 0, 1, 2)
+        tip = "What all cells share: the parameters that are not varied"
+        self._add(layout, 3, "Others", self.base_box, f"{name}-base", tip)
+        self._add(layout, 4, "Cells", self.side_box, f"{name}-side", "Height and width of every result, in pixels")
+        layout.addWidget(self.error, 5, 0, 1, 2)
+        layout.setRowStretch(6, 1)
+        layout.setColumnStretch(1, 1)
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setFixedWidth(WIDTH)
+        self.setWidget(inside)
+        self.recipe_box.activated.connect(lambda _: self._choose_recipe())
+        for axis in (self.across, self.down):
+            axis.changed.connect(self._axis_changed)
+
+    def _add(self, layout: QGridLayout, row: int, text: str, box: QComboBox, name: str, tip: str) -> None:
+        label = QLabel(text)
+        label.setBuddy(box)
+        label.setMinimumWidth(_LABEL)
+        box.setObjectName(name)
+        box.setAccessibleName(text)
+        box.setToolTip(tip)
+        box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        layout.addWidget(label, row, 0)
+        layout.addWidget(box, row, 1)
+
+    def show_method(self, method: Method, recipes: tuple[SweepRecipe, ...]) -> None:
+        """Offer a method's knobs and ready-made sweeps; what was chosen for it before comes back."""
+        if self._method:
+            self._choices[self._method] = (self.across.choice, self.down.choice)
+        self._method, self._recipes, self._recipe = method.id, recipes, None
+        across, down = self._choices.get(method.id, (None, None))
+        self.across.show_method(method.params, across)
+        self.down.show_method(method.params, down)
+        self.recipe_box.clear()
+        self.recipe_box.addItem("own choice" if recipes else "none for this method")
+        for place, recipe in enumerate(recipes):
+            self.recipe_box.addItem(recipe.name.removeprefix(f"{method.id}-").replace("-", " "))
+            self.recipe_box.setItemData(place + 1, f"<qt>{recipe.note}</qt>", Qt.ItemDataRole.ToolTipRole)
+        self.recipe_box.setEnabled(bool(recipes))
+        self._offer_base()
+        self.tell("")
+
+    @property
+    def chosen_recipe(self) -> SweepRecipe | None:
+        """The ready-made sweep that is shown as it is."""
+        place = self.recipe_box.currentIndex() - 1
+        return self._recipes[place] if 0 <= place < len(self._recipes) else None
+
+    def plan(self) -> SweepPlan:
+        """Return what was asked for; raises ``InputError`` when it makes no sense."""
+        axes = tuple(axis for axis in (self.across.vary(), self.down.vary()) if axis is not None)
+        return SweepPlan(axes, self.side_box.currentData(), self.base_box.currentData())
+
+    def tell(self, sentence: str) -> None:
+        """Show why nothing can be started; "" takes it away."""
+        self.error.setText(sentence)
+        self.error.setVisible(bool(sentence))
+        if sentence:
+            self.ensureWidgetVisible(self.error)
+
+    def _choose_recipe(self) -> None:
+        recipe = self.chosen_recipe
+        # The editors tell of every change; these are not the user's.
+        self._recipe = None
+        if recipe is not None:
+            self.across.show_vary(recipe.axes[0])
+            if len(recipe.axes) > 1:
+                self.down.show_vary(recipe.axes[1])
+            else:
+                self.down.choose_knob("")
+            if recipe.size is not None and recipe.size[0] in SIDES:
+                self.side_box.setCurrentIndex(SIDES.index(recipe.size[0]))
+        self._recipe = recipe
+        self._offer_base()
+
+    def _offer_base(self) -> None:
+        items: list[tuple[str, Any]] = [("as in the column", None)]
+        if self._recipe is not None:
+            given = self._recipe.parameters.items()
+            values = ", ".join(f"{name.replace('_', ' ')} {show(value)}" for name, value in given)
+            items.append((f"defaults, {values}" if values else "defaults", self._recipe.params))
+        self.base_box.clear()
+        for text, params in items:
+            self.base_box.addItem(text, params)
+        self.base_box.setEnabled(len(items) > 1)
+        self.base_box.setCurrentIndex(len(items) - 1)
+
+    def _axis_changed(self) -> None:
+        self.tell("")
+        if self._recipe is not None:
+            # The values are the user's own from here on; the recipe's other parameters stay on offer.
+            self.recipe_box.setCurrentIndex(0)

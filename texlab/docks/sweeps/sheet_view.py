@@ -1,0 +1,440 @@
+"""A contact sheet that fills while it is looked at: pictures in a grid with captions, mouse and keyboard."""
+
+from __future__ import annotations
+
+import bisect
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFont, QHelpEvent, QImage, QPainter, QPixmap
+from PySide6.QtWidgets import QFrame, QScrollArea, QToolTip, QWidget
+
+from texlab.style.theme import DARK
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from PySide6.QtGui import (
+        QFontMetrics,
+        QKeyEvent,
+        QMouseEvent,
+        QPaintEvent,
+        QResizeEvent,
+        QWheelEvent,
+    )
+
+    from texlab.runs.sweep_run import ShownCell
+    from texlab.state.scene import Picture
+    from texlab.style.theme import Theme
+
+SMALLEST, USUAL, LARGEST = 48, 112, 384
+_GAP = 10
+NARROWEST = 76
+
+
+class ContactSheetView(QScrollArea):
+    """Shows the cells of a sweep in their places.
+
+    ``taken(index)``: a finished cell was clicked, or chosen with Return. ``zoom_wanted(steps)``: the wheel was
+    turned with Ctrl held, or + or - was pressed.
+    """
+
+    taken = Signal(int)
+    zoom_wanted = Signal(int)
+
+    def __init__(self, name: str, empty: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.canvas = _Canvas(self, empty)
+        self.canvas.setObjectName(f"{name}-canvas")
+        self.setWidget(self.canvas)
+
+    def show_grid(self, settings: Sequence[str], columns: int | None, shape: tuple[int, int]) -> None:
+        """Start an empty sheet.
+
+        Parameters
+        ----------
+        settings
+            What was varied, one text for each cell, row by row.
+        columns
+            Cells in a row; None lets a series flow with the width of the window.
+        shape
+            Height and width of the pictures to come.
+        """
+        self.canvas.settings = list(settings)
+        self.canvas.fixed_columns = columns
+        self.canvas.shape = shape
+        self.canvas.cells = {}
+        self.canvas.pixmaps.clear()
+        self.canvas.marked = None
+        self.canvas.current = 0
+        self.canvas.relayout()
+        self.verticalScrollBar().setValue(0)
+        self.horizontalScrollBar().setValue(0)
+
+    def show_cells(self, cells: Mapping[int, ShownCell]) -> None:
+        """Show the cells that have finished."""
+        self.canvas.show_cells(cells)
+
+    def fitting_side(self, count: int, columns: int | None, largest: int) -> int:
+        """Return a size for square cells: all are in sight if that is possible, else the columns of a grid.
+
+        Parameters
+        ----------
+        count, columns
+            Number of cells, and of cells in a row; None for a series.
+        largest
+            Size beyond which the pictures would be enlarged.
+        """
+        width = self.width() - self.verticalScrollBar().sizeHint().width()
+        caption = 4 + 3 * self.canvas.fontMetrics().lineSpacing()
+        for side in range(min(largest, LARGEST), USUAL, -4):
+            across = columns or max(1, (width - _GAP) // (side + _GAP))
+            rows = -(-count // across)
+            is_wide = _GAP + across * (side + _GAP) > width
+            if not is_wide and _GAP + rows * (side + caption + _GAP) <= self.height():
+                return side
+        return USUAL if columns is None else min(max((width - _GAP) // columns - _GAP, NARROWEST), USUAL)
+
+    def set_side(self, side: int) -> None:
+        """Show the cells at another size: the longest side of a picture in pixels."""
+        self.canvas.set_side(side)
+
+    def mark(self, index: int | None) -> None:
+        """Mark the cell that has the parameters of the column."""
+        if index != self.canvas.marked:
+            self.canvas.marked = index
+            self.canvas.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.canvas.theme = theme
+        palette = self.viewport().palette()
+        palette.setColor(palette.ColorRole.Window, QColor(theme.canvas))
+        self.viewport().setPalette(palette)
+        self.canvas.update()
+
+    def cell_rect(self, index: int) -> QRect:
+        """Return where a cell (picture and caption) stands on the canvas."""
+        return self.canvas.rect_of(index)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Let a series flow anew."""
+        super().resizeEvent(event)
+        self.canvas.relayout()
+
+
+class _Canvas(QWidget):
+    """Paints only the cells that can be seen."""
+
+    def __init__(self, view: ContactSheetView, empty: str) -> None:
+        super().__init__()
+        self._view = view
+        self._empty = empty
+        self.theme: Theme = DARK
+        self.settings: list[str] = []
+        self.fixed_columns: int | None = None
+        self.shape = (1, 1)
+        self.cells: dict[int, ShownCell] = {}
+        self.pixmaps: dict[int, QPixmap] = {}
+        self.marked: int | None = None
+        self.current = 0
+        self._side = USUAL
+        self._columns = 1
+        self._tops = [_GAP]
+        self._lines: list[int] = []
+        self._over: int | None = None
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMouseTracking(True)
+        self.setAccessibleName("Contact sheet")
+        self.setAccessibleDescription(empty)
+
+    # Geometry.
+
+    @property
+    def columns(self) -> int:
+        """Cells in a row."""
+        return self._columns
+
+    @property
+    def picture_size(self) -> QSize:
+        """Size at which the pictures are painted."""
+        height, width = self.shape
+        scale = self._side / max(height, width)
+        return QSize(max(1, round(width * scale)), max(1, round(height * scale)))
+
+    @property
+    def _cell_width(self) -> int:
+        return max(self.picture_size.width(), NARROWEST)
+
+    def rect_of(self, index: int) -> QRect:
+        """Return the rectangle of a cell."""
+        row, column = divmod(index, self._columns)
+        x = _GAP + column * (self._cell_width + _GAP)
+        return QRect(x, self._tops[row], self._cell_width, self._tops[row + 1] - _GAP - self._tops[row])
+
+    def index_at(self, place: QPoint) -> int | None:
+        """Return the cell at a place."""
+        half = _GAP // 2
+        column = (place.x() - half) // (self._cell_width + _GAP)
+        row = bisect.bisect_right(self._tops, place.y() + half) - 1
+        index = row * self._columns + column
+        inside = 0 <= column < self._columns and row >= 0
+        return index if inside and index < len(self.settings) else None
+
+    def relayout(self) -> None:
+        """Place the cells anew; a row is as high as its longest caption."""
+        viewport = self._view.viewport().size()
+        width = self._cell_width
+        fitting = max(1, (viewport.width() - _GAP) // (width + _GAP))
+        self._columns = self.fixed_columns or min(fitting, max(len(self.settings), 1))
+        line, picture = self.fontMetrics().lineSpacing(), self.picture_size.height()
+        self._tops, self._lines = [_GAP], []
+        for first in range(0, len(self.settings), self._columns):
+            self._lines.append(self._caption_lines(first))
+            self._tops.append(self._tops[-1] + picture + 4 + self._lines[-1] * line + _GAP)
+        wanted = QSize(_GAP + self._columns * (width + _GAP), self._tops[-1]) if self.settings else QSize(0, 0)
+        # As large as the view where that is larger, but never so large that a scroll bar comes for nothing.
+        self.resize(wanted.expandedTo(viewport))
+        self.update()
+
+    def _caption_lines(self, first: int) -> int:
+        """Return how many lines the captions of the row that starts with this cell need."""
+        metrics, width = self.fontMetrics(), self._cell_width
+        row = range(first, min(first + self._columns, len(self.settings)))
+        count = max(len(packed(self.settings[index], width, metrics)) for index in row)
+        found = [len(packed(self.cells[each].cell.evidence, width, metrics)) for each in row if each in self.cells]
+        return count + max(found, default=self._evidence_lines)
+
+    @property
+    def _evidence_lines(self) -> int:
+        """Lines of evidence below a cell that has not finished: as many as below the others."""
+        metrics = self.fontMetrics()
+        some = list(self.cells.values())[:20]
+        return max((len(packed(each.cell.evidence, self._cell_width, metrics)) for each in some), default=0)
+
+    def set_side(self, side: int) -> None:
+        """Show the cells at another size, keeping the one in the middle in sight."""
+        if side == self._side:
+            return
+        self._side = side
+        self.pixmaps.clear()
+        self.relayout()
+        self._reveal(self.current)
+
+    def show_cells(self, cells: Mapping[int, ShownCell]) -> None:
+        """Show the cells that have finished."""
+        fresh = [index for index, cell in cells.items() if self.cells.get(index) is not cell]
+        self.cells = dict(cells)
+        if not fresh:
+            return
+        for index in fresh:
+            self.pixmaps.pop(index, None)
+        rows = range(0, len(self.settings), self._columns)
+        if [self._caption_lines(first) for first in rows] != self._lines:
+            self.relayout()
+        for index in fresh:
+            self.update(self.rect_of(index).adjusted(-4, -4, 4, 4))
+
+    # Painting.
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the cells in the part that must be painted."""
+        painter = QPainter(self)
+        painter.fillRect(event.rect(), QColor(self.theme.canvas))
+        if not self.settings:
+            painter.setPen(QColor(self.theme.muted))
+            area = self.rect().adjusted(20, 0, -20, 0)
+            painter.drawText(area, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
+        first = max(0, bisect.bisect_right(self._tops, event.rect().top()) - 1) * self._columns
+        last = bisect.bisect_right(self._tops, event.rect().bottom() + _GAP) * self._columns
+        for index in range(first, min(last, len(self.settings))):
+            if self.rect_of(index).adjusted(-4, -4, 4, 4).intersects(event.rect()):
+                self._paint_cell(painter, index)
+        painter.end()
+
+    def _paint_cell(self, painter: QPainter, index: int) -> None:
+        theme, area = self.theme, self.rect_of(index)
+        size = self.picture_size
+        box = QRect(area.left() + (area.width() - size.width()) // 2, area.top(), size.width(), size.height())
+        shown = self.cells.get(index)
+        self._paint_frame(painter, index, area)
+        if shown is None or shown.picture is None:
+            painter.fillRect(box, QColor(theme.raised if shown is not None else theme.base))
+        if shown is None:
+            painter.setPen(QColor(theme.muted))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, "…")
+        elif shown.picture is None:
+            self._paint_error(painter, box, shown.cell.error)
+        else:
+            painter.drawPixmap(box, self._pixmap(index, shown.picture))
+        self._paint_caption(painter, area.adjusted(0, size.height() + 3, 0, 0), index, shown)
+
+    def _paint_frame(self, painter: QPainter, index: int, area: QRect) -> None:
+        theme = self.theme
+        if index == self.marked:
+            painter.fillRect(area.adjusted(-4, -4, 4, 4), QColor(theme.accent))
+        elif index == self._over:
+            painter.fillRect(area.adjusted(-4, -4, 4, 4), QColor(theme.raised))
+        if index == self.current and self.hasFocus():
+            painter.setPen(QColor(theme.text))
+            painter.drawRect(area.adjusted(-4, -4, 3, 3))
+
+    def _paint_caption(self, painter: QPainter, area: QRect, index: int, shown: ShownCell | None) -> None:
+        theme, metrics = self.theme, self.fontMetrics()
+        strong, pale = (theme.text, theme.muted) if index != self.marked else (theme.accent_text,) * 2
+        evidence = "" if shown is None else shown.cell.evidence
+        failed = shown is not None and shown.picture is None and index != self.marked
+        y = area.top() + metrics.ascent()
+        for text, colour in ((self.settings[index], strong), (evidence, theme.error if failed else pale)):
+            painter.setPen(QColor(colour))
+            for line in packed(text, area.width(), metrics):
+                elided = metrics.elidedText(line, Qt.TextElideMode.ElideRight, area.width())
+                painter.drawText(area.left() + (area.width() - metrics.horizontalAdvance(elided)) // 2, y, elided)
+                y += metrics.lineSpacing()
+
+    def _paint_error(self, painter: QPainter, box: QRect, sentence: str) -> None:
+        usual = painter.font()
+        small = QFont(usual)
+        small.setPointSizeF(max(6.0, usual.pointSizeF() * 0.85))
+        painter.setFont(small)
+        painter.setPen(QColor(self.theme.error))
+        flags = Qt.TextFlag.TextWrapAnywhere if box.width() < NARROWEST else Qt.TextFlag.TextWordWrap
+        painter.save()
+        painter.setClipRect(box)
+        painter.drawText(box.adjusted(4, 3, -4, -3), flags, sentence)
+        painter.restore()
+        painter.setFont(usual)
+
+    def _pixmap(self, index: int, picture: Picture) -> QPixmap:
+        made = self.pixmaps.get(index)
+        ratio = self.devicePixelRatioF()
+        if made is None or made.devicePixelRatio() != ratio:
+            height, width = picture.shape[:2]
+            image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888)
+            size = self.picture_size * ratio
+            # Enlarged pixels stay pixels.
+            smaller = size.width() < width
+            mode = (
+                Qt.TransformationMode.SmoothTransformation if smaller else Qt.TransformationMode.FastTransformation
+            )
+            scaled = image.scaled(size, Qt.AspectRatioMode.IgnoreAspectRatio, mode)
+            made = QPixmap.fromImage(scaled)
+            made.setDevicePixelRatio(ratio)
+            self.pixmaps[index] = made
+        return made
+
+    # Mouse and keyboard.
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Make the cell under the pointer the current one."""
+        index = self.index_at(event.position().toPoint())
+        if index is not None:
+            self._go(index)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Take a cell when it was clicked."""
+        index = self.index_at(event.position().toPoint())
+        if event.button() == Qt.MouseButton.LeftButton and index is not None and index == self.current:
+            self._take(index)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Light the cell under the pointer; a hand where a click takes something."""
+        self._point(self.index_at(event.position().toPoint()))
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Light no cell."""
+        self._point(None)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom while Ctrl is held; scroll else."""
+        if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            self._view.zoom_wanted.emit(1 if event.angleDelta().y() > 0 else -1)
+            event.accept()
+        else:
+            super().wheelEvent(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Move with the arrows, Home and End, take with Return or Space, zoom with + and -."""
+        key = Qt.Key(event.key())
+        last = len(self.settings) - 1
+        moves = {
+            Qt.Key.Key_Left: self.current - 1,
+            Qt.Key.Key_Right: self.current + 1,
+            Qt.Key.Key_Up: self.current - self._columns,
+            Qt.Key.Key_Down: self.current + self._columns,
+            Qt.Key.Key_Home: 0,
+            Qt.Key.Key_End: last,
+        }
+        if key in moves:
+            if 0 <= moves[key] <= last:
+                self._go(moves[key])
+        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):
+            self._take(self.current)
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
+            self._view.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
+        else:
+            super().keyPressEvent(event)
+
+    def event(self, event: QEvent) -> bool:
+        """Show the whole text of a cell as its tooltip."""
+        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
+            index = self.index_at(event.pos())
+            QToolTip.showText(event.globalPos(), self.describe(index) if index is not None else "", self)
+            return True
+        return super().event(event)
+
+    def describe(self, index: int) -> str:
+        """Return everything that is known of a cell."""
+        shown = self.cells.get(index)
+        if shown is None:
+            return f"{self.settings[index]}: not finished yet"
+        if shown.picture is None:
+            return f"{self.settings[index]}: {shown.cell.error}"
+        return f"{shown.cell.label}. Click to take the parameters."
+
+    def _point(self, index: int | None) -> None:
+        if index == self._over:
+            return
+        self._over = index
+        shown = None if index is None else self.cells.get(index)
+        can_take = shown is not None and shown.picture is not None
+        self.setCursor(Qt.CursorShape.PointingHandCursor if can_take else Qt.CursorShape.ArrowCursor)
+        self.update()
+
+    def _go(self, index: int) -> None:
+        self.current = index
+        self.setAccessibleDescription(self.describe(index))
+        self._reveal(index)
+        self.update()
+
+    def _reveal(self, index: int) -> None:
+        if index < len(self.settings):
+            area = self.rect_of(index)
+            middle = area.center()
+            self._view.ensureVisible(middle.x(), middle.y(), area.width() // 2 + _GAP, area.height() // 2 + _GAP)
+
+    def _take(self, index: int) -> None:
+        shown = self.cells.get(index)
+        if shown is not None and shown.picture is not None:
+            self._view.taken.emit(index)
+
+
+def packed(text: str, width: int, metrics: QFontMetrics) -> list[str]:
+    """Break a text at its commas into lines that fit ``width`` pixels; what is still too wide, at its spaces."""
+    lines: list[str] = []
+    for part in text.split(", ") if text else []:
+        joined = f"{lines[-1]}, {part}" if lines else part
+        if lines and metrics.horizontalAdvance(joined) <= width:
+            lines[-1] = joined
+            continue
+        words = part.split()
+        lines.append(words[0])
+        for word in words[1:]:
+            if metrics.horizontalAdvance(f"{lines[-1]} {word}") <= width:
+                lines[-1] += f" {word}"
+            else:
+                lines.append(word)
+    return lines

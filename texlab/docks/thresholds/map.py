@@ -1,0 +1,255 @@
+"""A threshold table as a heat map: rows are levels, coarsest first, columns are features."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from texlab.docks.thresholds.numbers import NumberWriter
+from texlab.docks.thresholds.painting import (
+    CHANNEL_COLOURS,
+    cell_colours,
+    colours,
+    draw_corner,
+    draw_glyph,
+    draw_lock,
+)
+from texlab.docks.thresholds.table import cell_text
+from texlab.style.theme import DARK, LIGHT
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QPaintEvent, QResizeEvent
+
+    from texlab.docks.thresholds.table import Head, TableView
+    from texlab.style.theme import Theme
+
+GROUP_GAP = 5.0
+STRIP = 3.0
+
+
+class Grid(NamedTuple):
+    """Left sides of the columns, top of the first row, size of a cell; measured for these heads."""
+
+    lefts: tuple[float, ...]
+    top: float
+    width: float
+    height: float
+    heads: tuple[Head, ...]
+
+
+class TableMap(QWidget):
+    """Paints a :class:`TableView`; the small one in the form has neither numbers nor names of levels."""
+
+    def __init__(self, name: str, label: str, *, small: bool = False, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setAccessibleName(label)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._small = small
+        self._theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
+        self._view: TableView | None = None
+        self._grid: Grid | None = None
+        self._writer: NumberWriter | None = None
+        self._locked: frozenset[tuple[int, str]] = frozenset()
+        vertical = QSizePolicy.Policy.Fixed if small else QSizePolicy.Policy.Expanding
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, vertical)
+
+    @property
+    def view(self) -> TableView | None:
+        """What is shown."""
+        return self._view
+
+    def show_view(self, view: TableView | None) -> None:
+        """Show a table."""
+        before, self._view = self._view, view
+        if before is None or view is None or view.values.shape != before.values.shape:
+            self._grid = None
+            self.updateGeometry()
+        if before is None or view is None or not view.looks_like(before):
+            self.update()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        self.update()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the palette where nobody tells about the theme."""
+        super().changeEvent(event)
+        self._grid = None
+        if event.type() == QEvent.Type.PaletteChange:
+            self.set_theme(DARK if self.palette().window().color().lightness() < 128 else LIGHT)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Measure anew."""
+        super().resizeEvent(event)
+        self._grid = None
+
+    def sizeHint(self) -> QSize:
+        """Ask for rows that can be read."""
+        rows = self._view.axes.depth if self._view is not None else 4
+        if self._small:
+            return QSize(200, round(self._top() + rows * (self.fontMetrics().height() + 2)))
+        return QSize(520, round(self._top() + rows * 30))
+
+    def minimumSizeHint(self) -> QSize:
+        """Allow low docks; the small one keeps its height."""
+        hint = self.sizeHint()
+        return QSize(100, hint.height()) if self._small else QSize(200, 90)
+
+    # Where things are.
+
+    def cell_rect(self, row: int, column: int) -> QRectF:
+        """Return where a cell is painted."""
+        grid = self._geometry()
+        return QRectF(grid.lefts[column], grid.top + row * grid.height, grid.width, grid.height)
+
+    def row_rect(self, row: int) -> QRectF:
+        """Return where the head of a row is painted."""
+        grid = self._geometry()
+        return QRectF(0, grid.top + row * grid.height, grid.lefts[0], grid.height)
+
+    def column_rect(self, column: int) -> QRectF:
+        """Return where the head of a column is painted."""
+        grid = self._geometry()
+        return QRectF(grid.lefts[column], 0, grid.width, grid.top)
+
+    def at(self, x: float, y: float) -> tuple[int, int] | None:
+        """Return the cell at a place; row -1 is the head of a column, column -1 that of a row."""
+        if self._view is None:
+            return None
+        grid = self._geometry()
+        row = -1 if y < grid.top else int((y - grid.top) // grid.height)
+        column = int(np.searchsorted(grid.lefts, x, side="right")) - 1
+        inside = row < self._view.axes.depth and x < grid.lefts[-1] + grid.width
+        return (row, column) if inside and max(row, column) >= 0 else None
+
+    def _geometry(self) -> Grid:
+        """Return where the cells are; measured anew when size, font or heads are others."""
+        assert self._view is not None
+        heads = self._view.heads
+        if self._grid is None or self._grid.heads is not heads:
+            rows, columns = self._view.values.shape
+            left, top = self._left(), self._top()
+            gaps = [0.0, *(GROUP_GAP * (one.group != other.group) for one, other in pairwise(heads))]
+            width = max(3.0, (self.width() - left - 1 - sum(gaps)) / columns)
+            lefts = left + np.arange(columns) * width + np.cumsum(gaps)
+            height = max(3.0, (self.height() - top - 1) / max(rows, 1))
+            self._grid = Grid(tuple(lefts.tolist()), top, width, height, heads)
+        return self._grid
+
+    def _left(self) -> float:
+        if self._view is None:
+            return 0.0
+        metrics = self.fontMetrics()
+        lines = [line for name in self._row_names() for line in name.split("\n")]
+        return max((metrics.horizontalAdvance(line) for line in lines), default=0) + 8.0
+
+    def _top(self) -> float:
+        return STRIP + 2.0 if self._small else self.fontMetrics().height() + self._glyph_side() + 6.0
+
+    def _glyph_side(self) -> float:
+        return self.fontMetrics().ascent() + 2.0
+
+    def _row_names(self) -> list[str]:
+        assert self._view is not None
+        axes = self._view.axes
+        if self._small:
+            return [f"k {k}" for k in range(1, axes.depth + 1)]
+        return [
+            f"k {k}, level {axes.level(k)}\n{width} × {height}"
+            for k, (height, width) in enumerate(axes.sizes, start=1)
+        ]
+
+    # Painting.
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint heads, cells and marks."""
+        if self._view is None:
+            return
+        painter = QPainter(self)
+        self._paint_rows(painter)
+        self._paint_columns(painter)
+        self._paint_cells(painter)
+        self.paint_more(painter)
+        if self.hasFocus() and self._small:
+            painter.setPen(QPen(QColor(self._theme.accent), 1))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+        painter.end()
+
+    def paint_more(self, painter: QPainter) -> None:
+        """Paint what lies over the cells."""
+
+    def _paint_rows(self, painter: QPainter) -> None:
+        painter.setPen(QColor(self._theme.muted))
+        flags = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        for row, name in enumerate(self._row_names()):
+            area = self.row_rect(row).adjusted(0, 0, -6, 0)
+            # The size of the level is left out where there is no room for two lines.
+            low = area.height() < 2 * self.fontMetrics().lineSpacing()
+            painter.drawText(area, flags, name.split("\n")[0] if low else name)
+
+    def _paint_columns(self, painter: QPainter) -> None:
+        assert self._view is not None
+        heads = self._view.heads
+        glyph = self._glyph_side()
+        start = 0
+        for column, head in enumerate(heads):
+            area = self.column_rect(column)
+            colour = QColor(CHANNEL_COLOURS.get(head.group, self._theme.text))
+            if self._small:
+                painter.fillRect(QRectF(area.left(), 0, area.width(), STRIP), colour)
+                continue
+            place = QRectF(area.left() + 1, area.bottom() - glyph - 2, area.width() - 2, glyph)
+            draw_glyph(painter, head.first, place, colour)
+            if column + 1 == len(heads) or heads[column + 1].group != head.group:
+                first = self.column_rect(start)
+                self._paint_group(painter, head.group, QRectF(first.topLeft(), area.bottomRight()))
+                start = column + 1
+
+    def _paint_group(self, painter: QPainter, group: str, area: QRectF) -> None:
+        metrics = self.fontMetrics()
+        words = metrics.elidedText(group, Qt.TextElideMode.ElideRight, int(area.width()))
+        painter.setPen(QColor(self._theme.text))
+        line = QRectF(area.left(), 0, area.width(), metrics.height())
+        painter.drawText(line, Qt.AlignmentFlag.AlignCenter, words)
+
+    def _paint_cells(self, painter: QPainter) -> None:
+        view = self._view
+        assert view is not None
+        table = colours(view.values)
+        writer = self._writer_for_cells()
+        for row in range(view.values.shape[0]):
+            for column in range(view.values.shape[1]):
+                area = self.cell_rect(row, column).adjusted(0, 0, -1, -1)
+                fill, ink = cell_colours(*(int(part) for part in table[row, column]))
+                painter.fillRect(area, fill)
+                if not self._small:
+                    painter.setPen(ink)
+                    bold = bool(view.changed[row, column])
+                    writer.write(painter, _texts(view, row, column), area, bold=bold)
+                if view.changed[row, column]:
+                    draw_corner(painter, area, ink)
+                if self._locked and all(cell in self._locked for cell in view.cells(row, column)):
+                    draw_lock(painter, area, ink)
+
+    def _writer_for_cells(self) -> NumberWriter:
+        grid = self._geometry()
+        key = (self.font().key(), grid.width - 1, grid.height - 1)
+        if self._writer is None or self._writer.key != key:
+            self._writer = NumberWriter(self.font(), grid.width - 1, grid.height - 1)
+        return self._writer
+
+
+def _texts(view: TableView, row: int, column: int) -> tuple[str, ...]:
+    """Return what may be written into a cell, the fullest first."""
+    if view.mixed[row, column]:
+        return ("≠",)
+    value = float(view.values[row, column])
+    return tuple(cell_text(value, digits) for digits in (3, 2, 1))

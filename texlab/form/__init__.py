@@ -1,0 +1,1 @@
+"""Parameters as widgets, made from their declarations."""

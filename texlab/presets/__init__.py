@@ -1,0 +1,1 @@
+"""Presets in the window: bar, dialog, manager."""

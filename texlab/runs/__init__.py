@@ -1,0 +1,1 @@
+"""Work for the window, off its thread: controller, columns at work, workers, errands."""

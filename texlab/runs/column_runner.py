@@ -1,0 +1,248 @@
+"""A column at work: its thread, what it shows, and where it can go on."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, Signal
+
+from texlab.runs.column_run import ColumnRun, Drafted, DraftRun, Finished, Loading, Progress, Waits, with_exemplar
+from texlab.runs.slots import Rank, Slots
+from texlab.runs.worker import Worker
+from texlab.state.difference import draft_size
+from texlab.state.scene import ColumnScene
+from texlab_core.engine.inputs import ArraysInput
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import AnalysisCache, Job
+from texlab_core.warming import Need, Warmth
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from texlab.state.session import Column, State
+    from texlab_core.engine.inputs import ImageInput
+
+    Keep = Callable[[], Mapping[str, Any]]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Shared:
+    """What all columns share: places on the cores, analyses, and what is loaded."""
+
+    slots: Slots
+    cache: AnalysisCache
+    warmth: Warmth
+
+
+class ColumnRunner(QObject):
+    """Runs one column, the newest job instead of any other, and keeps what it shows; ``changed()`` tells of it."""
+
+    changed = Signal()
+
+    def __init__(self, column: Column, shared: Shared, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._shared = shared
+        method = find_method(column.method)
+        self.scene = ColumnScene(column.id, method.id, method.title, column.params, inputs=column.inputs)
+        self.seconds: float | None = None
+        """What the full size takes, as far as that is known."""
+        self.drafted = False
+        """Whether the newest job is a draft."""
+        self._full = (1, 1)  # of the newest job, as the session has it
+        # Where pictures come as fast as events, the column stays as it is until the next one is there.
+        self._live = False
+        self._run: ColumnRun | None = None
+        self._kept: Keep | None = None
+        # Method and exemplar of the newest job.
+        self._origin: tuple[str, str] | None = None
+        self.worker = Worker(f"column-{column.id}", shared.slots, self)
+        self.worker.started.connect(lambda _: self._started())
+        self.worker.progressed.connect(self._progressed)
+        self.worker.finished.connect(self._finished)
+        self.worker.failed.connect(self._failed)
+        self.worker.cancelled.connect(self._cancelled)
+
+    @property
+    def running(self) -> bool:
+        """Whether a job waits or runs, and can be stopped."""
+        return self.scene.status in ("waiting", "running")
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is on its way, also one for which the column does not show that it runs."""
+        return self._live or self.running
+
+    @property
+    def resumable(self) -> bool:
+        """Whether there is a place to go on from."""
+        return self._kept is not None
+
+    # What it is asked for.
+
+    def start(
+        self,
+        column: Column,
+        state: State,
+        exemplar: ImageInput,
+        *,
+        draft: bool = False,
+        go_on: bool = False,
+        alone: bool = False,
+    ) -> None:
+        """Run the column's job of this state: as a draft, or going on from where it came to an end.
+
+        What is asked of this column ``alone`` goes before what all of them have to do.
+        """
+        method = find_method(column.method)
+        full = column.size or state.size
+        self._full = state.size
+        origin = method.id, exemplar.sha256
+        if origin != self._origin:
+            # Where another method stood, or the same on another exemplar, is no place to go on from.
+            self._origin, self._kept = origin, None
+        # What is filled keeps its size: a smaller start image would be another job.
+        size = draft_size(full, self.seconds) if draft and column.size is None else None
+        own_draft = size is not None and method.draft is not None
+        # Within a drag every picture is finished, or none would be while the events come faster than they.
+        patient, self.drafted = draft and self.drafted, draft
+        self._live = draft and size is None and self.scene.status == "finished"
+        self._announce(column, small=size is not None)
+        make_job = partial(
+            job_of,
+            column,
+            exemplar,
+            full if own_draft or size is None else size,
+            state.seed,
+            self._kept if go_on else None,
+        )
+        loading = Loading(self._shared.warmth, Need(method.id, exemplar.channels))
+        rank = Rank.DRAFT if draft else Rank.CHANGED if alone else Rank.REST
+        if own_draft:
+            self.worker.submit(DraftRun(make_job), patient=patient, first=loading, rank=rank)
+        else:
+            self._run = ColumnRun(make_job, self._shared.cache, draft=draft)
+            self.worker.submit(self._run, patient=patient, first=loading, rank=rank)
+
+    def _announce(self, column: Column, *, small: bool) -> None:
+        changes: dict[str, Any] = {
+            "method": column.method,
+            "title": find_method(column.method).title,
+            "params": column.params,
+            "inputs": column.inputs,
+        }
+        if not self._live:
+            changes |= {
+                "status": "waiting",
+                "message": "",
+                "fraction": 0.0,
+                "result": self.scene.result if self.drafted else None,
+                "frames": self.scene.frames if self.drafted else (),
+                "metrics": {},
+                "draft": small,
+                "elapsed_s": 0.0,
+            }
+        self._show(**changes)
+
+    def stop(self) -> None:
+        """Stop; it can go on from there where the method knows how."""
+        if self.running:
+            if self._run is not None and self._run.state is not None:
+                self._kept = self._run.state
+            self.worker.cancel()
+
+    def await_exemplar(self, coming: bool) -> None:
+        """Stop because of another exemplar; the column waits for it, or is idle when there is none."""
+        self.worker.cancel()
+        self._show(status="waiting" if coming else "idle", message="", result=None)
+
+    def fail(self, sentence: str) -> None:
+        """Say why there is nothing to run."""
+        self._show(status="failed", message=sentence, result=None, draft=False)
+
+    # Its end.
+
+    @property
+    def ended(self) -> bool:
+        """Whether the thread has ended."""
+        return self.worker.ended
+
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting."""
+        self.worker.leave()
+
+    def close(self) -> None:
+        """Stop the thread and wait for its end."""
+        self.worker.close()
+
+    # The worker reports.
+
+    def _show(self, **changes: Any) -> None:
+        self.scene = dataclasses.replace(self.scene, resumable=self.resumable, **changes)
+        self.changed.emit()
+
+    def _started(self) -> None:
+        if not self._live:
+            self._show(status="running", message="")
+
+    def _progressed(self, report: Progress | Waits) -> None:
+        if isinstance(report, Waits):
+            self._show(message=report.reason)
+            return
+        changes: dict[str, Any] = {
+            "fraction": report.fraction,
+            "message": report.message,
+            "metrics": report.metrics,
+            "frames": report.frames,
+            "elapsed_s": report.elapsed_s,
+        }
+        if report.picture is not None:
+            changes |= {"picture": report.picture, "image": report.image}
+        self._show(**changes)
+
+    def _finished(self, end: Finished | Drafted) -> None:
+        behind = self.worker.behind
+        status = "waiting" if behind and not self._live else "finished"
+        self._live = self._live and behind
+        if isinstance(end, Drafted):
+            self._show(status=status, message="", picture=end.picture, image=end.image, result=None, draft=True)
+            return
+        # A draft tells as well how long the full size would take: the time grows with the area.
+        drawn = end.result.image.shape[0] * end.result.image.shape[1]
+        self.seconds = end.result.elapsed_s * max(1.0, math.prod(self._full) / drawn)
+        if not end.draft:
+            self._kept = self._run.state if self._run is not None else None
+        changes: dict[str, Any] = {
+            "status": status,
+            "message": "",
+            "fraction": 1.0,
+            "picture": end.picture,
+            "image": end.result.image,
+            "draft": end.draft and drawn < math.prod(self._full),
+            "elapsed_s": end.result.elapsed_s,
+            "result": end.result,
+            "metrics": end.metrics,
+        }
+        if not end.draft:
+            changes["frames"] = end.frames
+        self._show(**changes)
+
+    def _failed(self, sentence: str) -> None:
+        self._live = False
+        self._show(status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
+
+    def _cancelled(self) -> None:
+        self._live = False
+        self._show(status="cancelled", message="", draft=False)
+
+
+def job_of(
+    column: Column, exemplar: ImageInput, size: tuple[int, int], seed: int, state: Keep | None = None
+) -> Job:
+    """Return a column's job, going on from a state that is read now."""
+    inputs = with_exemplar(exemplar, column.inputs)
+    if state is not None:
+        inputs["state"] = ArraysInput(state(), "state")
+    return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)

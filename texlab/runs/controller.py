@@ -1,0 +1,329 @@
+"""Takes what the user does to the session, and the differences between two sessions to the columns."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from texlab.runs.column_runner import ColumnRunner, Shared
+from texlab.runs.errands import Errands
+from texlab.runs.exemplar import Preparation, Prepared, rescaled
+from texlab.runs.slots import Slots
+from texlab.runs.worker import Request, Worker
+from texlab.state.difference import difference
+from texlab.state.scene import ColumnScene, Mark, Probe, Scene
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import AnalysisCache
+from texlab_core.warming import Need, Warmth, every_need
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.state.session import Sample, Session, State
+    from texlab.style.theme import ThemeSource
+    from texlab_core.engine.inputs import Crop, ImageInput, Input
+    from texlab_core.engine.params import Params
+
+
+class Controller(QObject):
+    """Runs columns when the session changes and tells the window what to show.
+
+    ``scene_changed(scene)`` after every change; ``exemplar_ready(prepared)`` when another exemplar is in use;
+    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news;
+    ``open_wanted(source)`` when a dock wants a file or a texture of the gallery opened.
+    """
+
+    scene_changed = Signal(object)
+    exemplar_ready = Signal(object)
+    problem = Signal(str)
+    said = Signal(str)
+    all_idle = Signal()
+    marks_changed = Signal(object)
+    open_wanted = Signal(object)
+
+    def __init__(self, session: Session, themes: ThemeSource, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self._themes = themes
+        self._shared = Shared(Slots(max(1, os.cpu_count() or 1)), AnalysisCache(), Warmth())
+        self._runners: dict[int, ColumnRunner] = {}
+        self._leaving: list[ColumnRunner] = []
+        self._dragging = False
+        self._cropping = False
+        self._probe: Probe | None = None
+        self._preparation = Preparation(self)
+        self._preparation.ready.connect(self._exemplar_prepared)
+        self._preparation.failed.connect(self._exemplar_failed)
+        self._errands = Errands(self)
+        self._errands.failed.connect(self.problem)
+        self._errands.idle.connect(self._errands_ended)
+        self._warming = Worker("warming", parent=self)
+        self._warming.submit(lambda task: self.warmth.serve())
+        self._refresh = QTimer(self)
+        self._refresh.setSingleShot(True)
+        self._refresh.setInterval(0)
+        self._refresh.timeout.connect(self._announce)
+        self.all_idle.connect(self._load_the_rest)
+        session.changed.connect(self._session_changed)
+        session.selected.connect(lambda _: self._refresh.start())
+        themes.changed.connect(lambda _: self._refresh.start())
+
+    # What there is to show.
+
+    @property
+    def exemplar(self) -> ImageInput | None:
+        """The exemplar in use (the session's, once it is prepared)."""
+        return self.prepared.exemplar if self.prepared is not None else None
+
+    @property
+    def prepared(self) -> Prepared | None:
+        """The exemplar with its scaled source."""
+        return self._preparation.prepared
+
+    def scene(self) -> Scene:
+        """Return the frozen picture of now."""
+        columns = tuple(
+            self._runners[column.id].scene for column in self.session.state.columns if column.id in self._runners
+        )
+        return Scene(self._themes.theme, self.exemplar, columns, self.session.selected_id, self._probe)
+
+    def column_scene(self, column_id: int) -> ColumnScene | None:
+        """Return what one column shows."""
+        runner = self._runners.get(column_id)
+        return runner.scene if runner is not None else None
+
+    @property
+    def slots(self) -> Slots:
+        """The places that everything that computes shares: as many as there are cores."""
+        return self._shared.slots
+
+    @property
+    def warmth(self) -> Warmth:
+        """What is loaded, for everybody who runs methods."""
+        return self._shared.warmth
+
+    @property
+    def busy(self) -> bool:
+        """Whether any column waits or runs, or the exemplar is being prepared."""
+        running = any(runner.busy for runner in self._runners.values())
+        return running or self._preparation.busy or self._errands.busy
+
+    # What the user does.
+
+    def edit_params(self, column_id: int, params: Params, name: str, final: bool) -> None:
+        """Take parameters from the form: drafts while a control is dragged, the full size on release."""
+        with self._drag(not final):
+            self.session.set_params(column_id, params, name, merge=("knob", column_id, name))
+        self._settle(final, (column_id,))
+
+    def edit_inputs(
+        self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, final: bool = True
+    ) -> None:
+        """Give a column other further inputs: drafts while something is dragged, the full size on release."""
+        with self._drag(not final):
+            self.session.set_inputs(column_id, inputs, text, merge=("inputs", column_id, text))
+        self._settle(final, (column_id,))
+
+    def edit_crop(self, crop: Crop | None, final: bool) -> None:
+        """Take another crop from the exemplar's box."""
+        sample = self.session.state.sample
+        if sample is not None:
+            with self._drag(not final):
+                self.session.set_sample(dataclasses.replace(sample, crop=crop), merge="crop")
+            self._cropping = not final
+            # An exemplar that is still being prepared starts the columns at full size when it comes.
+            self._settle(final, () if self._preparation.busy else tuple(self._runners))
+
+    def edit_scale(self, scale: float, merge: object | None = None) -> None:
+        """Scale the source; the crop is scaled along."""
+        sample = self.session.state.sample
+        if sample is None or scale == sample.scale:
+            return
+        self.session.set_sample(rescaled(sample, scale), merge=merge)
+
+    @contextlib.contextmanager
+    def _drag(self, dragging: bool) -> Any:
+        self._dragging = dragging
+        try:
+            yield
+        finally:
+            self._dragging = False
+
+    def _settle(self, final: bool, columns: tuple[int, ...]) -> None:
+        if not final:
+            return
+        self.session.finish_merge()
+        for column_id in columns:
+            runner = self._runners.get(column_id)
+            if runner is not None and runner.drafted:
+                self._start(column_id, alone=len(columns) == 1)
+
+    def point_at(self, column_id: int, row: int, column: int) -> None:
+        """Ask about the pixel under the pointer, unless another one is pinned."""
+        if self._probe is not None and self._probe.pinned:
+            return
+        self._set_probe(Probe(column_id, row, column) if row >= 0 else None)
+
+    def pin(self, column_id: int, row: int, column: int) -> None:
+        """Keep asking about a pixel; the same pixel again lets go of it."""
+        wanted = Probe(column_id, row, column, pinned=True)
+        self._set_probe(None if self._probe == wanted or row < 0 else wanted)
+
+    def _set_probe(self, probe: Probe | None) -> None:
+        if probe != self._probe:
+            self._probe = probe
+            self._refresh.start()
+
+    def show_marks(self, marks: tuple[Mark, ...]) -> None:
+        """Outline places in the exemplar."""
+        self.marks_changed.emit(marks)
+
+    def reset_params(self, column_id: int) -> None:
+        """Give a column its method's defaults."""
+        column = self.session.state.column(column_id)
+        if column is not None:
+            self.session.set_params(column_id, find_method(column.method).params(), "reset all")
+
+    def run_column(self, column_id: int) -> None:
+        """Run a column at full size."""
+        self._start(column_id, alone=True)
+
+    def go_on(self, column_id: int) -> None:
+        """Go on from where a column was stopped or had finished, also at a larger size."""
+        runner = self._runners.get(column_id)
+        if runner is not None and runner.resumable:
+            self._start(column_id, go_on=True, alone=True)
+
+    def run_all(self) -> None:
+        """Run every column."""
+        for column in self.session.state.columns:
+            self._start(column.id)
+
+    def stop_column(self, column_id: int) -> None:
+        """Stop a column; the others go on."""
+        runner = self._runners.get(column_id)
+        if runner is not None:
+            runner.stop()
+
+    def stop_all(self) -> None:
+        """Stop every column."""
+        for runner in list(self._runners.values()):
+            runner.stop()
+
+    def once(
+        self,
+        name: str,
+        request: Request,
+        done: Callable[[Any], None] | None = None,
+        failed: Callable[[], None] | None = None,
+    ) -> None:
+        """Do something once in the background (open, save); a failure becomes one sentence, then ``failed()``."""
+        self._errands.run(name, request, done, failed)
+
+    # The end.
+
+    def leave(self) -> None:
+        """Ask every thread to end, without waiting."""
+        self._refresh.stop()
+        self.warmth.close()
+        for each in self._threads():
+            each.leave()
+
+    def close(self) -> None:
+        """Stop and join every thread; they end side by side."""
+        self.leave()
+        for each in self._threads():
+            each.close()
+        self._runners.clear()
+        self._leaving.clear()
+
+    def _threads(self) -> list[ColumnRunner | Preparation | Worker | Errands]:
+        return [*self._runners.values(), *self._leaving, self._preparation, self._warming, self._errands]
+
+    # The session has changed.
+
+    def _session_changed(self, before: State, after: State) -> None:
+        changes = difference(before, after)
+        for column_id in changes.removed:
+            self._let_go(self._runners.pop(column_id))
+        for column_id in changes.added:
+            self._add_runner(column_id)
+        if changes.sample or changes.added:
+            self._wish(after)
+        if changes.sample:
+            self._prepare(after.sample)
+        elif self.prepared is not None:
+            for column_id in changes.run:
+                self._start(column_id, draft=self._dragging, alone=len(changes.run) == 1)
+        self._refresh.start()
+
+    def _let_go(self, runner: ColumnRunner) -> None:
+        """End a column without waiting: the window must not stand still while it comes to a stop."""
+        runner.leave()
+        for ended in [each for each in self._leaving if each.ended]:
+            self._leaving.remove(ended)
+            ended.deleteLater()
+        self._leaving.append(runner)
+
+    def _add_runner(self, column_id: int) -> None:
+        column = self.session.state.column(column_id)
+        assert column is not None
+        runner = ColumnRunner(column, self._shared, self)
+        runner.changed.connect(lambda: self._refresh.start())
+        self._runners[column_id] = runner
+
+    def _prepare(self, sample: Sample | None) -> None:
+        self._cropping = self._dragging
+        # While the box is dragged, the drafts on their way are still worth seeing.
+        if not self._cropping:
+            for runner in self._runners.values():
+                runner.await_exemplar(coming=sample is not None)
+        self._preparation.take(sample, patient=self._cropping)
+
+    def _exemplar_prepared(self, prepared: Prepared) -> None:
+        self.exemplar_ready.emit(prepared)
+        if self._cropping or not self._preparation.busy:
+            for column in self.session.state.columns:
+                self._start(column.id, draft=self._cropping)
+        self._refresh.start()
+
+    def _exemplar_failed(self, sentence: str) -> None:
+        self.problem.emit(sentence)
+        for runner in self._runners.values():
+            runner.fail(sentence)
+
+    def _start(self, column_id: int, *, draft: bool = False, go_on: bool = False, alone: bool = False) -> None:
+        runner = self._runners.get(column_id)
+        column = self.session.state.column(column_id)
+        exemplar = self.exemplar
+        if runner is None or column is None or exemplar is None or (self._preparation.busy and not draft):
+            return
+        runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone)
+
+    # Loading.
+
+    def _wish(self, state: State) -> None:
+        """Begin to load what the columns are about to need, in their order; most exemplars are coloured."""
+        channels = state.sample.source.channels if state.sample is not None else 3
+        self.warmth.wish(Need(column.method, channels) for column in state.columns)
+
+    def _load_the_rest(self) -> None:
+        """Load what no column needs, once all of them have what they need."""
+        if self.prepared is not None:
+            self.all_idle.disconnect(self._load_the_rest)
+            self.warmth.wish(every_need())
+
+    # Telling.
+
+    def _errands_ended(self) -> None:
+        if not self.busy:
+            self.all_idle.emit()
+
+    def _announce(self) -> None:
+        self.scene_changed.emit(self.scene())
+        if not self.busy:
+            self.all_idle.emit()

@@ -1,0 +1,136 @@
+"""Sweeps in the window: what the user asked for as a sweep, its run in a worker's thread, a cell taken over."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from texlab.runs.column_run import TaskLike, with_exemplar
+from texlab.style.pictures import to_picture
+from texlab_core.engine.run import Job
+from texlab_core.errors import InputError
+from texlab_core.sheets.sweep import Cell, Sweep, Vary
+from texlab_core.sheets.sweep_running import Places, run_sweep
+
+if TYPE_CHECKING:
+    from texlab.state.scene import Picture
+    from texlab.state.session import Column, State
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.params import Params
+
+# All results are kept at full precision, for the sheet that is saved: 12 bytes a pixel.
+MAX_PIXELS = 32 * 2**20
+
+
+@dataclass(frozen=True, eq=False)
+class ShownCell:
+    """A finished cell with what is painted, (H, W, 3) uint8; None when it failed."""
+
+    cell: Cell
+    picture: Picture | None
+
+
+@dataclass(frozen=True, eq=False)
+class SweepProgress:
+    """All cells that have finished so far, in the order of finishing, and the share done."""
+
+    cells: tuple[ShownCell, ...]
+    fraction: float
+
+
+@dataclass(frozen=True)
+class SweepPlan:
+    """What the user asked for.
+
+    Parameters
+    ----------
+    axes
+        One or two.
+    side
+        Height and width of the cells in pixels; None takes the size of the columns.
+    params
+        What all cells share but for what is varied; None takes the column's.
+    """
+
+    axes: tuple[Vary, ...]
+    side: int | None = None
+    params: Params | None = None
+
+    def sweep(self, state: State, column: Column, exemplar: ImageInput) -> Sweep:
+        """Return the sweep of a column's method.
+
+        Raises
+        ------
+        InputError
+            When it cannot be run, or would not fit in memory.
+        """
+        size = state.size if self.side is None else (self.side, self.side)
+        base = Job(
+            method=column.method,
+            inputs=with_exemplar(exemplar, column.inputs),
+            params=column.params if self.params is None else self.params,
+            size=size,
+            seed=state.seed,
+        )
+        sweep = Sweep(base, self.axes)
+        if len(sweep.jobs) * size[0] * size[1] > MAX_PIXELS:
+            raise InputError(
+                f"{len(sweep.jobs)} cells of {size[1]} x {size[0]} are more than "
+                f"{MAX_PIXELS // 2**20} megapixels; ask for fewer or smaller cells."
+            )
+        return sweep
+
+
+@dataclass
+class SweepRun:
+    """A request for a worker: runs every cell, each on a place of its own, and leaves one core to the columns."""
+
+    sweep: Sweep
+    places: Places
+
+    def __call__(self, task: TaskLike) -> SweepProgress:
+        """Run to the end, reporting every cell."""
+        made: list[ShownCell] = []
+        fraction = 0.0
+
+        def show(cell: Cell) -> None:
+            picture = None if cell.result is None else to_picture(cell.result.image)
+            made.append(ShownCell(cell, picture))
+            task.progress(SweepProgress(tuple(made), fraction))
+
+        def advance(share: float) -> None:
+            nonlocal fraction
+            fraction = share
+            if task.due():
+                task.progress(SweepProgress(tuple(made), share))
+
+        workers = max(1, (os.cpu_count() or 1) - 1)
+        run_sweep(self.sweep, show, task.should_stop, on_progress=advance, workers=workers, places=self.places)
+        return SweepProgress(tuple(made), 1.0)
+
+
+def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State, int] | None:
+    """Return the state in which a column has a cell's parameters (and its seed, when that is varied).
+
+    Parameters
+    ----------
+    state
+        The present state.
+    cell
+        What was clicked.
+    wanted
+        Ids of columns by preference; the first with the cell's method takes the parameters, then any other.
+
+    Returns
+    -------
+    State and id of the column, or None when no column runs the method.
+    """
+    columns = [column for column in map(state.column, wanted) if column is not None]
+    for column in (*columns, *state.columns):
+        if column.method == cell.job.method:
+            changed = state.with_column(dataclasses.replace(column, params=cell.job.params))
+            seed = cell.job.seed if "seed" in cell.values else state.seed
+            return dataclasses.replace(changed, seed=seed), column.id
+    return None

@@ -1,0 +1,1 @@
+"""What the user has chosen and what there is to see: frozen values and pure functions."""

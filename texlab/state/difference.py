@@ -1,0 +1,57 @@
+"""Pure decisions: which columns a change concerns, how large a draft may be, how a scene looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from texlab.state.session import State
+
+DRAFT_BUDGET_S = 0.05
+SMALLEST_DRAFT = 48
+
+
+@dataclass(frozen=True)
+class Difference:
+    """What must happen when the session goes from one state to another."""
+
+    sample: bool
+    added: tuple[int, ...]
+    removed: tuple[int, ...]
+    run: tuple[int, ...]
+    order: bool
+
+
+def difference(before: State, after: State) -> Difference:
+    """Return what differs between two states, in terms of what has to be done."""
+    old = {column.id: column for column in before.columns}
+    new = {column.id: column for column in after.columns}
+    same_frame = before.seed == after.seed and before.size == after.size
+    run = tuple(key for key, column in new.items() if not same_frame or old.get(key) != column)
+    before_key = before.sample.key if before.sample is not None else None
+    after_key = after.sample.key if after.sample is not None else None
+    return Difference(
+        sample=before_key != after_key,
+        added=tuple(key for key in new if key not in old),
+        removed=tuple(key for key in old if key not in new),
+        run=run,
+        order=tuple(old) != tuple(new),
+    )
+
+
+def draft_size(size: tuple[int, int], seconds: float | None) -> tuple[int, int] | None:
+    """Return the size of a draft that takes about 50 ms, or None when the full size is as quick.
+
+    Parameters
+    ----------
+    size
+        Full height and width.
+    seconds
+        How long the full size took last time; None when that is unknown.
+    """
+    if seconds is not None and seconds <= DRAFT_BUDGET_S:
+        return None
+    factor = (DRAFT_BUDGET_S / seconds) ** 0.5 if seconds else 0.5
+    height, width = (max(min(side, SMALLEST_DRAFT), round(side * factor / 8) * 8) for side in size)
+    return None if (height, width) == size else (height, width)

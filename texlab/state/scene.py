@@ -1,0 +1,138 @@
+"""The frozen picture of session and results that the docks look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from texlab.style.theme import Theme
+    from texlab_core.engine.inputs import ImageInput, Input
+    from texlab_core.engine.params import Params
+    from texlab_core.engine.steps import FloatImage, Result
+
+Status = Literal["idle", "waiting", "running", "finished", "cancelled", "failed"]
+Picture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One kept stage of a run ("iteration 3"), as (H, W, 3) uint8."""
+
+    name: str
+    picture: Picture
+
+
+@dataclass(frozen=True, eq=False)
+class ColumnScene:
+    """What a column shows.
+
+    Parameters
+    ----------
+    id, method, title, params
+        What the user chose.
+    status
+        idle, waiting (for a core), running, finished, cancelled or failed.
+    message
+        One line for people: the stage, or why it failed.
+    fraction
+        Progress from 0 to 1 of the phase under way.
+    picture
+        What is painted, (H, W, 3) uint8.
+    image
+        The same as values, (H, W, C) float32 in [0, 1]; a preview while the run goes on.
+    result
+        The finished result, or None while there is none for the present parameters. While a control is dragged it
+        is the newest there is; ``result.job`` tells what it was made with.
+    draft
+        The picture is a quick one, made while a control is dragged.
+    frames
+        Stages kept for the scrubber, in order.
+    metrics
+        The newest numbers of the run.
+    elapsed_s
+        Wall time of the run.
+    resumable
+        A stopped or finished run can be gone on with, also at a larger size.
+    inputs
+        What the column works on besides the exemplar (a code of 69 numbers, say).
+    """
+
+    id: int
+    method: str
+    title: str
+    params: Params
+    status: Status = "idle"
+    message: str = ""
+    fraction: float = 0.0
+    picture: Picture | None = None
+    image: FloatImage | None = None
+    result: Result | None = None
+    draft: bool = False
+    frames: tuple[Frame, ...] = ()
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    elapsed_s: float = 0.0
+    resumable: bool = False
+    inputs: tuple[tuple[str, Input], ...] = ()
+
+
+@dataclass(frozen=True)
+class Probe:
+    """The pixel that the user asks about: under the pointer, or pinned by a click."""
+
+    column_id: int
+    row: int
+    column: int
+    pinned: bool = False
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.
+
+    ``chosen`` is the one that was taken, ``candidate`` another that could have been, ``window`` a neighbourhood.
+    """
+
+    top: float
+    left: float
+    height: float
+    width: float
+    role: Literal["chosen", "candidate", "window"] = "candidate"
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything that docks may show."""
+
+    theme: Theme
+    exemplar: ImageInput | None = None
+    columns: tuple[ColumnScene, ...] = ()
+    selected_id: int = 0
+    probe: Probe | None = None
+
+    @property
+    def selected(self) -> ColumnScene | None:
+        """The chosen column."""
+        return next((column for column in self.columns if column.id == self.selected_id), None)
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What a dock wants to know.
+
+    Parameters
+    ----------
+    key
+        Hashable; while it stays equal nothing is computed again.
+    compute
+        Called in a background thread with a ``should_stop`` function; its value goes to ``Dock.present``. It must
+        not touch any widget.
+    """
+
+    key: tuple[Any, ...]
+    compute: Callable[[Callable[[], bool]], Any]

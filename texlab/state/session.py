@@ -1,0 +1,296 @@
+"""What the user has chosen: an immutable state, the history of its changes, and nothing computed."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from texlab_core.engine.run import MAX_SEED
+
+if TYPE_CHECKING:
+    from texlab_core.engine.inputs import Crop, ImageInput, Input
+    from texlab_core.engine.params import Params
+
+MAX_HISTORY = 200
+MAX_HISTORY_BYTES = 2**30
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The exemplar as chosen: a source image, scaled first, then cropped."""
+
+    source: ImageInput
+    scale: float = 1.0
+    crop: Crop | None = None
+    path: str | None = None
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What decides the pixels."""
+        return (self.source.sha256, self.scale, self.crop)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One method beside the exemplar.
+
+    Parameters
+    ----------
+    id
+        Unique within a session, never used again.
+    method
+        Id of the registered method.
+    params
+        Its parameters.
+    inputs
+        Further named inputs (a mask, a code, a state); the exemplar is the session's.
+    size
+        Height and width of its result; None is the session's.
+    """
+
+    id: int
+    method: str
+    params: Params
+    inputs: tuple[tuple[str, Input], ...] = ()
+    size: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class State:
+    """Everything that undo and redo bring back."""
+
+    sample: Sample | None = None
+    columns: tuple[Column, ...] = ()
+    seed: int = 1
+    size: tuple[int, int] = (256, 256)
+    next_id: int = 1
+
+    def column(self, column_id: int) -> Column | None:
+        """Return the column with this id."""
+        return next((column for column in self.columns if column.id == column_id), None)
+
+    def with_column(self, changed: Column) -> State:
+        """Return a state in which the column with the same id is replaced."""
+        columns = tuple(changed if column.id == changed.id else column for column in self.columns)
+        return dataclasses.replace(self, columns=columns)
+
+
+@dataclass
+class _Entry:
+    state: State
+    text: str
+    merge: object | None = field(default=None)
+
+
+class Session(QObject):
+    """The observable session with undo and redo.
+
+    A change with a ``merge`` key replaces the entry before it when that has the same key: a drag is one step.
+    """
+
+    changed = Signal(object, object)
+    history_changed = Signal()
+    selected = Signal(int)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._entries = [_Entry(State(), "")]
+        self._at = 0
+        self._selected = 0
+
+    @property
+    def state(self) -> State:
+        """The present state."""
+        return self._entries[self._at].state
+
+    @property
+    def selected_id(self) -> int:
+        """Id of the chosen column; 0 when there is none."""
+        return self._selected
+
+    @property
+    def selected_column(self) -> Column | None:
+        """The chosen column."""
+        return self.state.column(self._selected)
+
+    def select(self, column_id: int) -> None:
+        """Choose a column (not a step of the history)."""
+        if column_id != self._selected:
+            self._selected = column_id
+            self.selected.emit(column_id)
+
+    def apply(self, state: State, text: str, *, merge: object | None = None) -> None:
+        """Change the state; ``text`` names the step for the undo menu."""
+        before = self.state
+        if state == before:
+            return
+        del self._entries[self._at + 1 :]
+        if merge is not None and self._at > 0 and self._entries[self._at].merge == merge:
+            self._entries[self._at] = _Entry(state, text, merge)
+        else:
+            self._entries.append(_Entry(state, text, merge))
+            self._forget_oldest()
+            self._at = len(self._entries) - 1
+        self._announce(before)
+
+    def _forget_oldest(self) -> None:
+        """Keep the history short, and the pictures in it (held once each) within their limit."""
+        first, held = len(self._entries), dict[int, int]()
+        for entry in reversed(self._entries[-MAX_HISTORY:]):
+            if entry.state.sample is not None:
+                pixels = entry.state.sample.source.pixels
+                held[id(pixels)] = pixels.nbytes
+            if sum(held.values()) > MAX_HISTORY_BYTES and first < len(self._entries):
+                break
+            first -= 1
+        del self._entries[:first]
+
+    def finish_merge(self, merge: object | None = None) -> None:
+        """End a drag (any, or the one with this key): the next change is a step of its own."""
+        if merge is None or self._entries[self._at].merge == merge:
+            self._entries[self._at].merge = None
+
+    def reset_history(self) -> None:
+        """Forget the history and keep the present state."""
+        self._entries = [_Entry(self.state, "")]
+        self._at = 0
+        self.history_changed.emit()
+
+    @property
+    def undo_text(self) -> str | None:
+        """What undo would take back, or None."""
+        return self._entries[self._at].text if self._at > 0 else None
+
+    @property
+    def redo_text(self) -> str | None:
+        """What redo would do again, or None."""
+        return self._entries[self._at + 1].text if self._at + 1 < len(self._entries) else None
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        if self._at > 0:
+            before = self.state
+            self._at -= 1
+            self.finish_merge()
+            self._announce(before)
+
+    def redo(self) -> None:
+        """Do the step again that was taken back last."""
+        if self._at + 1 < len(self._entries):
+            before = self.state
+            self._at += 1
+            self.finish_merge()
+            self._announce(before)
+
+    def _announce(self, before: State) -> None:
+        if self.state.column(self._selected) is None:
+            gone = [column.id for column in before.columns]
+            place = gone.index(self._selected) if self._selected in gone else 0
+            left = self.state.columns
+            self._selected = left[min(place, len(left) - 1)].id if left else 0
+            self.selected.emit(self._selected)
+        self.changed.emit(before, self.state)
+        self.history_changed.emit()
+
+    # Changes, one function each.
+
+    def set_sample(self, sample: Sample, *, merge: object | None = None) -> None:
+        """Choose another exemplar, or another crop or scale of it."""
+        same_source = self.state.sample is not None and self.state.sample.source is sample.source
+        text = "crop or scale" if same_source else f"exemplar {sample.source.name}"
+        self.apply(dataclasses.replace(self.state, sample=sample), text, merge=merge)
+
+    def set_seed(self, seed: int, *, merge: object | None = None) -> None:
+        """Set the seed, 0 .. 2147483647."""
+        self.apply(dataclasses.replace(self.state, seed=min(max(seed, 0), MAX_SEED)), f"seed {seed}", merge=merge)
+
+    def set_size(self, size: tuple[int, int], *, merge: object | None = None) -> None:
+        """Set the height and width of the results."""
+        self.apply(dataclasses.replace(self.state, size=size), f"size {size[1]} x {size[0]}", merge=merge)
+
+    def set_params(self, column_id: int, params: Params, text: str, *, merge: object | None = None) -> None:
+        """Set a column's parameters; what belongs to another method is none of its business."""
+        column = self.state.column(column_id)
+        if column is not None and type(params) is type(column.params):
+            changed = dataclasses.replace(column, params=params)
+            self.apply(self.state.with_column(changed), text, merge=merge)
+
+    def set_method(self, column_id: int, method: str, params: Params) -> None:
+        """Give a column another method."""
+        column = self.state.column(column_id)
+        if column is not None and column.method != method:
+            changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None)
+            self.apply(self.state.with_column(changed), f"method {method}")
+
+    def set_inputs(
+        self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, *, merge: object | None = None
+    ) -> None:
+        """Give a column other further inputs."""
+        column = self.state.column(column_id)
+        if column is not None:
+            self.apply(self.state.with_column(dataclasses.replace(column, inputs=inputs)), text, merge=merge)
+
+    def add_column(self, method: str, params: Params, *, after: int | None = None) -> int:
+        """Add a column behind the one with the id ``after`` (at the end without); returns its id."""
+        state = self.state
+        column = Column(state.next_id, method, params)
+        columns = list(state.columns)
+        places = [each.id for each in columns]
+        columns.insert(places.index(after) + 1 if after in places else len(columns), column)
+        self.apply(
+            dataclasses.replace(state, columns=tuple(columns), next_id=state.next_id + 1), f"column {method}"
+        )
+        return column.id
+
+    def fill(
+        self, params: Params, inputs: tuple[tuple[str, Input], ...], size: tuple[int, int] | None, method: str
+    ) -> int:
+        """Fill holes in the column that filled before, or in a new one at the end; returns its id."""
+        state = self.state
+        before = next(
+            (each for each in state.columns if each.method == method and "mask" in dict(each.inputs)), None
+        )
+        if before is not None:
+            column = dataclasses.replace(before, params=params, inputs=inputs, size=size)
+            self.apply(state.with_column(column), "fill")
+            return column.id
+        column = Column(state.next_id, method, params, inputs, size)
+        self.apply(dataclasses.replace(state, columns=(*state.columns, column), next_id=state.next_id + 1), "fill")
+        return column.id
+
+    def duplicate_column(self, column_id: int) -> int:
+        """Add a copy of a column behind it; returns the copy's id, or 0."""
+        column = self.state.column(column_id)
+        if column is None:
+            return 0
+        state = self.state
+        copy = dataclasses.replace(column, id=state.next_id)
+        place = state.columns.index(column) + 1
+        columns = (*state.columns[:place], copy, *state.columns[place:])
+        self.apply(dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), "duplicate column")
+        return copy.id
+
+    def remove_column(self, column_id: int) -> None:
+        """Remove a column."""
+        columns = tuple(column for column in self.state.columns if column.id != column_id)
+        self.apply(dataclasses.replace(self.state, columns=columns), "remove column")
+
+    def set_columns(self, columns: list[tuple[str, Params]], text: str) -> None:
+        """Put other columns in the place of all."""
+        state = self.state
+        made = tuple(Column(state.next_id + place, name, params) for place, (name, params) in enumerate(columns))
+        self.apply(dataclasses.replace(state, columns=made, next_id=state.next_id + len(made)), text)
+
+    def move_column(self, column_id: int, by: int) -> None:
+        """Move a column by so many places to the right (left when negative)."""
+        columns = list(self.state.columns)
+        places = [each.id for each in columns]
+        if column_id not in places:
+            return
+        old = places.index(column_id)
+        new = min(max(old + by, 0), len(columns) - 1)
+        columns.insert(new, columns.pop(old))
+        self.apply(dataclasses.replace(self.state, columns=tuple(columns)), "move column")

@@ -1,0 +1,1 @@
+"""How things look: theme, colour maps, numbers as text."""

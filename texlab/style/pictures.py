@@ -1,0 +1,29 @@
+"""Values to what is painted, and back to numbers for people; no Qt here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from texlab.state.scene import Picture
+    from texlab_core.engine.steps import FloatImage
+
+
+def to_picture(image: FloatImage) -> Picture:
+    """Return (H, W, 3) uint8 for an (H, W, C) float image in [0, 1]; gray is repeated."""
+    scaled = np.multiply(image, 255.0, dtype=np.float32)
+    np.add(scaled, 0.5, out=scaled)
+    np.clip(scaled, 0.0, 255.0, out=scaled)
+    values = scaled.astype(np.uint8)
+    if values.shape[2] == 1:
+        values = np.broadcast_to(values, (*values.shape[:2], 3))
+    return np.ascontiguousarray(values)
+
+
+def describe_pixel(image: FloatImage, row: int, column: int) -> str:
+    """Return place and value of a pixel for the status bar."""
+    values = image[row, column]
+    numbers = " ".join(f"{value:.3f}" for value in values)
+    return f"{column}, {row}   {'RGB' if len(values) == 3 else 'gray'} {numbers}"

@@ -1,1 +1,0 @@
-"""Widgets that show frozen data and emit intentions; none writes the session, none computes."""

@@ -1,0 +1,293 @@
+"""A pane that shows one image; all panes share pan and zoom through :class:`ViewLink`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter
+from PySide6.QtWidgets import QLabel
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QEvent, QPoint
+    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
+    from PySide6.QtWidgets import QWidget
+
+    from texlab.state.scene import Mark, Picture
+    from texlab.style.theme import Theme
+    from texlab.widgets.view_link import ViewLink
+
+
+NOTE_MARGIN = 8
+SMALLEST_MARK = 5.0
+MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
+
+
+class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """Outlines of places, painted with lines of the same width at any zoom."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: dict[str, list[QRectF]] = {}
+        self._bounds = QRectF()
+        self.setZValue(20)
+
+    def show_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float]) -> None:
+        """Outline these places."""
+        self.prepareGeometryChange()
+        self._lines = {role: [] for role in MARK_COLOURS}
+        self._bounds = QRectF()
+        for mark in marks:
+            place = QRectF(mark.left + offset[1], mark.top + offset[0], mark.width, mark.height)
+            self._lines[mark.role].append(place)
+            self._bounds = self._bounds.united(place)
+        self.update()
+
+    def boundingRect(self) -> QRectF:
+        """Return what the outlines cover."""
+        # Marks of single pixels are painted larger when the picture is small.
+        return self._bounds.adjusted(-8, -8, 8, 8)
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        """Paint a dark line under a bright one: seen on any picture, and never smaller than a few pixels."""
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        least = SMALLEST_MARK / max(abs(painter.worldTransform().m11()), 1e-6)
+        for role, colour in MARK_COLOURS.items():
+            places = [_enlarged(place, least) for place in self._lines.get(role, [])]
+            if places:
+                for pen_colour, width in (("#000000", 3), (colour, 2 if role == "chosen" else 1)):
+                    painter.setPen(pg.mkPen(pen_colour, width=width))
+                    painter.drawRects(places)
+
+
+def _enlarged(place: QRectF, least: float) -> QRectF:
+    """Return a rectangle with the same centre whose sides are not shorter than ``least``."""
+    grow = max(least - place.width(), 0.0) / 2, max(least - place.height(), 0.0) / 2
+    return place.adjusted(-grow[0], -grow[1], *grow)
+
+
+class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Shows an (H, W, 3) uint8 picture with nearest-neighbour enlargement.
+
+    ``hovered(row, column)`` gives the image pixel under the cursor (modulo the image when tiled), (-1, -1)
+    outside; ``clicked(row, column)`` likewise.
+    """
+
+    hovered = Signal(int, int)
+    clicked = Signal(int, int)
+    painted = Signal()
+    # The base class resizes itself while it is made.
+    _link: ViewLink | None = None
+    _picture: Picture | None = None
+    _note: QLabel | None = None
+
+    def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
+        super().__init__(parent, background=None)
+        self._link = link
+        self._tiled = False
+        self._press: QPoint | None = None
+        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
+        self.view.setMouseMode(pg.ViewBox.PanMode)
+        self.setCentralItem(self.view)
+        self.item = pg.ImageItem(levels=None)
+        self.view.addItem(self.item)
+        self._copies: list[Any] = []
+        self._overlay: Any = None
+        self._marks: MarksItem | None = None
+        self.setMouseTracking(True)
+        self.setMinimumSize(60, 60)
+        self.view.sigRangeChangedManually.connect(self._moved)
+        self.view.sigResized.connect(lambda _: link.resized())
+        self.scene().sigMouseMoved.connect(self._pointer_moved)
+        link.join(self)
+
+    @property
+    def picture(self) -> Picture | None:
+        """What is shown."""
+        return self._picture
+
+    @property
+    def tiled(self) -> bool:
+        """Whether the picture is shown 2 x 2."""
+        return self._tiled
+
+    @property
+    def extent(self) -> tuple[int, int] | None:
+        """Height and width of what is shown, with its copies when tiled."""
+        if self._picture is None:
+            return None
+        factor = 2 if self._tiled else 1
+        return self._picture.shape[0] * factor, self._picture.shape[1] * factor
+
+    def set_picture(self, picture: Picture | None) -> None:
+        """Show a picture, or nothing."""
+        self._picture = picture
+        if picture is None:
+            self.item.clear()
+        else:
+            self.item.setImage(picture, autoLevels=False, levels=None)
+        for copy in self._copies:
+            if picture is None:
+                copy.clear()
+            else:
+                copy.setImage(picture, autoLevels=False, levels=None)
+        self._place_copies()
+        self._choose_filter()
+        self.painted.emit()
+
+    def set_note(self, text: str) -> None:
+        """Say something in the place of the picture; nothing with an empty text."""
+        if self._note is None and text:
+            self._note = QLabel(self)
+            self._note.setObjectName("pane-note")
+            self._note.setProperty("role", "error")
+            self._note.setWordWrap(True)
+            self._note.setTextFormat(Qt.TextFormat.PlainText)
+            self._note.setAlignment(Qt.AlignmentFlag.AlignCenter)
+            self._note.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        if self._note is not None:
+            self._note.setText(text)
+            self._note.setVisible(bool(text))
+            self._place_note()
+
+    def _place_note(self) -> None:
+        if self._note is not None:
+            self._note.setGeometry(self.rect().adjusted(NOTE_MARGIN, NOTE_MARGIN, -NOTE_MARGIN, -NOTE_MARGIN))
+
+    def set_tiled(self, tiled: bool) -> None:
+        """Show the picture 2 x 2 so that seams are seen."""
+        if tiled == self._tiled:
+            return
+        self._tiled = tiled
+        for copy in self._copies:
+            self.view.removeItem(copy)
+        self._copies = [pg.ImageItem(levels=None) for _ in range(3)] if tiled else []
+        for copy in self._copies:
+            self.view.addItem(copy)
+        self.set_picture(self._picture)
+        link = self._link
+        if link is not None:
+            link.resized()
+
+    def set_overlay(self, picture: Picture | None, opacity: float = 0.6) -> None:
+        """Lay a coloured map of the same size over the picture, or take it away."""
+        if picture is None:
+            if self._overlay is not None:
+                self.view.removeItem(self._overlay)
+                self._overlay = None
+            return
+        if self._overlay is None:
+            self._overlay = pg.ImageItem(levels=None)
+            self._overlay.setZValue(10)
+            self.view.addItem(self._overlay)
+        self._overlay.setOpacity(opacity)
+        self._overlay.setImage(picture, autoLevels=False, levels=None)
+
+    def set_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Outline places of the picture; ``offset`` (row, column) is added to them."""
+        if not marks and self._marks is None:
+            return
+        if self._marks is None:
+            self._marks = MarksItem()
+            self.view.addItem(self._marks, ignoreBounds=True)
+        self._marks.show_marks(marks, offset)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.setBackground(QColor(theme.canvas))
+
+    def view_rect(self) -> QRectF:
+        """Return the visible rectangle in image coordinates."""
+        return QRectF(self.view.viewRect())
+
+    def show_rect(self, rectangle: QRectF) -> None:
+        """Make a rectangle of image coordinates visible."""
+        self.view.setRange(rectangle, padding=0, disableAutoRange=True)
+        self._choose_filter()
+
+    @property
+    def shown_scale(self) -> float:
+        """Widget pixels per image pixel."""
+        return float(self.view.width() / max(self.view_rect().width(), 1e-9))
+
+    def show_around(self, centre: QPointF, scale: float) -> None:
+        """Show a place in the middle, at so many widget pixels per image pixel."""
+        width, height = self.view.width() / scale, self.view.height() / scale
+        self.show_rect(QRectF(centre.x() - width / 2, centre.y() - height / 2, width, height))
+
+    def to_widget(self, row: float, column: float) -> QPointF:
+        """Return where an image position is painted, in widget coordinates."""
+        return QPointF(self.mapFromScene(self.view.mapViewToScene(QPointF(column, row))))
+
+    def detach(self) -> None:
+        """Leave the link before the pane is deleted."""
+        if self._link is not None:
+            self._link.leave(self)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit again when the user has not zoomed."""
+        super().resizeEvent(event)
+        self._place_note()
+        if self._link is not None:
+            self._link.resized()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Tell that the cursor has left."""
+        super().leaveEvent(event)
+        self.hovered.emit(-1, -1)
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Remember where the button went down."""
+        self._press = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseReleaseEvent(self, event: Any) -> None:
+        """Take a press and release on one place as a click."""
+        super().mouseReleaseEvent(event)
+        here = event.position().toPoint()
+        left = event.button() == Qt.MouseButton.LeftButton
+        if left and self._press is not None and (here - self._press).manhattanLength() <= 3:
+            self.clicked.emit(*self._pixel(self.mapToScene(here)))
+        self._press = None
+
+    def mouseDoubleClickEvent(self, event: Any) -> None:
+        """Fit all panes."""
+        super().mouseDoubleClickEvent(event)
+        if self._link is not None:
+            self._link.fit()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Leave context menus to the column."""
+        event.ignore()
+
+    def _place_copies(self) -> None:
+        if self._picture is None:
+            return
+        height, width = self._picture.shape[:2]
+        for copy, (row, column) in zip(self._copies, ((0, 1), (1, 0), (1, 1)), strict=False):
+            copy.setPos(column * width, row * height)
+
+    def _moved(self, *_: object) -> None:
+        self._choose_filter()
+        if self._link is not None:
+            self._link.moved(self)
+
+    def _choose_filter(self) -> None:
+        # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
+        pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
+        self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)
+
+    def _pixel(self, scene_point: QPointF) -> tuple[int, int]:
+        extent = self.extent
+        if extent is None or self._picture is None:
+            return -1, -1
+        point = self.view.mapSceneToView(scene_point)
+        row, column = int(np.floor(point.y())), int(np.floor(point.x()))
+        if not (0 <= row < extent[0] and 0 <= column < extent[1]):
+            return -1, -1
+        return row % self._picture.shape[0], column % self._picture.shape[1]
+
+    def _pointer_moved(self, scene_point: QPointF) -> None:
+        self.hovered.emit(*self._pixel(scene_point))

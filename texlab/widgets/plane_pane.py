@@ -1,0 +1,297 @@
+"""Panes for pictures with coordinates of their own: frequencies, or shifts of the autocorrelation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter
+
+from texlab.style.theme import configure_pyqtgraph
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtCore import QEvent, QPoint
+    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
+
+    from texlab.state.scene import Picture
+    from texlab.style.theme import Theme
+
+configure_pyqtgraph()
+
+Tint = Literal["exemplar", "result", "centre", "chosen"]
+Shape = Literal["circle", "square", "cross", "dot"]
+# Bright enough for any picture, over a dark edge; the shapes tell them apart without colour.
+TINTS: dict[Tint, str] = {"exemplar": "#6fc8ff", "result": "#ffb347", "centre": "#8ce99a", "chosen": "#ff5fb0"}
+MARK_PX = 5
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle in the coordinates of the plane."""
+
+    x: float
+    y: float
+    radius: float
+    tint: Tint = "centre"
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A mark of a few pixels."""
+
+    x: float
+    y: float
+    tint: Tint
+    shape: Shape = "circle"
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A line from one place to another with a head at its end."""
+
+    x: float
+    y: float
+    to_x: float
+    to_y: float
+    tint: Tint
+    dashed: bool = False
+
+
+Drawn = Ring | Spot | Arrow
+
+
+class PlaneLink:
+    """One rectangle of coordinates that all panes of a link show."""
+
+    def __init__(self) -> None:
+        self._panes: list[PlanePane] = []
+        self._fitted = True
+
+    def join(self, pane: PlanePane) -> None:
+        """Make a pane follow the others."""
+        self._panes.append(pane)
+
+    def moved(self, source: PlanePane) -> None:
+        """Show in all panes what the user made one show."""
+        self._fitted = False
+        rectangle = source.view_rect()
+        for pane in self._panes:
+            if pane is not source:
+                pane.show_rect(rectangle)
+
+    def changed(self) -> None:
+        """Fit again unless the user has zoomed."""
+        if self._fitted:
+            self.fit()
+
+    def fit(self) -> None:
+        """Show everything."""
+        self._fitted = True
+        whole = QRectF()
+        for pane in self._panes:
+            whole = whole.united(pane.area)
+        if not whole.isEmpty():
+            for pane in self._panes:
+                pane.show_rect(whole)
+
+
+class PlanePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Shows an (h, w, 3) uint8 picture of a plane with marks over it.
+
+    ``hovered(x, y)``, ``clicked(x, y)`` and ``left()`` are in the coordinates of the plane; y points down.
+    """
+
+    hovered = Signal(float, float)
+    clicked = Signal(float, float)
+    left = Signal()
+    # The base class resizes itself while it is made.
+    _link: PlaneLink | None = None
+
+    def __init__(self, name: str, label: str, link: PlaneLink | None = None) -> None:
+        super().__init__(None, background=None)
+        self._link = link or PlaneLink()
+        self.setObjectName(name)
+        self.setAccessibleName(label)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setMinimumSize(60, 60)
+        self.area = QRectF()
+        self.picture: Picture | None = None
+        self._press: QPoint | None = None
+        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
+        self.view.setMouseMode(pg.ViewBox.PanMode)
+        self.setCentralItem(self.view)
+        self.item = pg.ImageItem(levels=None)
+        self.view.addItem(self.item, ignoreBounds=True)
+        self.marks = MarksOverPlane()
+        self.view.addItem(self.marks, ignoreBounds=True)
+        self.setMouseTracking(True)
+        self.view.sigRangeChangedManually.connect(self._moved)
+        self._link.join(self)
+
+    def show_picture(self, picture: Picture | None, area: QRectF) -> None:
+        """Show a picture over a rectangle of coordinates, or nothing."""
+        self.picture = picture
+        if picture is None:
+            self.item.clear()
+            area = QRectF()
+        else:
+            self.item.setImage(picture, autoLevels=False, levels=None)
+            self.item.setRect(area)
+        if area != self.area:
+            self.area = area
+            if self._link is not None:
+                self._link.changed()
+
+    def show_marks(self, marks: Sequence[Drawn]) -> None:
+        """Draw these marks over the picture."""
+        self.marks.show_marks(marks)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self.setBackground(QColor(theme.canvas))
+
+    def view_rect(self) -> QRectF:
+        """Return the visible rectangle."""
+        return QRectF(self.view.viewRect())
+
+    def show_rect(self, rectangle: QRectF) -> None:
+        """Make a rectangle visible."""
+        self.view.setRange(rectangle, padding=0, disableAutoRange=True)
+
+    def to_widget(self, x: float, y: float) -> QPointF:
+        """Return where a place is painted, in the viewport."""
+        return QPointF(self.mapFromScene(self.view.mapViewToScene(QPointF(x, y))))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit again when the user has not zoomed."""
+        super().resizeEvent(event)
+        if self._link is not None:
+            self._link.changed()
+
+    def mouseMoveEvent(self, event: Any) -> None:
+        """Tell where the cursor is."""
+        super().mouseMoveEvent(event)
+        point = self._place(event.position().toPoint())
+        if self.area.contains(point):
+            self.hovered.emit(point.x(), point.y())
+        else:
+            self.left.emit()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Tell that the cursor has left."""
+        super().leaveEvent(event)
+        self.left.emit()
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Remember where the button went down."""
+        self._press = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseReleaseEvent(self, event: Any) -> None:
+        """Take a press and release on one place as a click."""
+        super().mouseReleaseEvent(event)
+        here = event.position().toPoint()
+        near = self._press is not None and (here - self._press).manhattanLength() <= 3
+        if event.button() == Qt.MouseButton.LeftButton and near:
+            point = self._place(here)
+            self.clicked.emit(point.x(), point.y())
+        self._press = None
+
+    def mouseDoubleClickEvent(self, event: Any) -> None:
+        """Show everything again."""
+        super().mouseDoubleClickEvent(event)
+        if self._link is not None:
+            self._link.fit()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Show no menu."""
+        event.ignore()
+
+    def _place(self, position: QPoint) -> QPointF:
+        return QPointF(self.view.mapSceneToView(self.mapToScene(position)))
+
+    def _moved(self, *_: object) -> None:
+        if self._link is not None:
+            self._link.moved(self)
+
+
+class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """Circles, marks and arrows, painted with lines of the same width at any zoom."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.shown: tuple[Drawn, ...] = ()
+        self._bounds = QRectF()
+        self.setZValue(20)
+
+    def show_marks(self, marks: Sequence[Drawn]) -> None:
+        """Draw these."""
+        self.prepareGeometryChange()
+        self.shown = tuple(marks)
+        self._bounds = QRectF()
+        for mark in self.shown:
+            reach = mark.radius if isinstance(mark, Ring) else 1e-6
+            self._bounds = self._bounds.united(QRectF(mark.x - reach, mark.y - reach, 2 * reach, 2 * reach))
+            if isinstance(mark, Arrow):
+                self._bounds = self._bounds.united(QRectF(mark.to_x - reach, mark.to_y - reach, 2e-6, 2e-6))
+        self.update()
+
+    def boundingRect(self) -> QRectF:
+        """Return what the marks cover, with room for those of a fixed size."""
+        more = 0.1 * max(self._bounds.width(), self._bounds.height()) + 1e-3
+        return self._bounds.adjusted(-more, -more, more, more)
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        """Paint a dark line under a bright one: seen on any picture."""
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        scale = abs(painter.worldTransform().m11()) or 1.0
+        for mark in self.shown:
+            thin = isinstance(mark, Ring) and mark.tint == "centre"
+            for colour, width in (("#000000", 2.2 if thin else 3.5), (TINTS[mark.tint], 1.0 if thin else 1.6)):
+                pen = pg.mkPen(colour, width=width)
+                pen.setCosmetic(True)
+                if not isinstance(mark, Spot) and mark.dashed:
+                    # Dashes are counted in widths of the line.
+                    pen.setDashPattern([4 / width, 3 / width])
+                painter.setPen(pen)
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                _draw(painter, mark, 1 / scale)
+
+
+def _draw(painter: QPainter, mark: Drawn, pixel: float) -> None:
+    here = QPointF(mark.x, mark.y)
+    if isinstance(mark, Ring):
+        painter.drawEllipse(here, mark.radius, mark.radius)
+    elif isinstance(mark, Arrow):
+        _draw_arrow(painter, here, QPointF(mark.to_x, mark.to_y), pixel)
+    else:
+        reach = MARK_PX * pixel
+        if mark.shape == "circle":
+            painter.drawEllipse(here, reach, reach)
+        elif mark.shape == "dot":
+            painter.drawEllipse(here, reach / 4, reach / 4)
+        elif mark.shape == "square":
+            painter.drawRect(QRectF(mark.x - reach, mark.y - reach, 2 * reach, 2 * reach))
+        else:
+            for sign in (1, -1):
+                step = QPointF(reach, sign * reach)
+                painter.drawLine(here - step, here + step)
+
+
+def _draw_arrow(painter: QPainter, here: QPointF, there: QPointF, pixel: float) -> None:
+    way = there - here
+    length = (way.x() ** 2 + way.y() ** 2) ** 0.5
+    # Shorter than its head there is nothing to point at.
+    if length < 3 * pixel:
+        return
+    painter.drawLine(here, there)
+    along = way / length
+    across = QPointF(-along.y(), along.x())
+    back = there - along * (6 * pixel)
+    for side in (1, -1):
+        painter.drawLine(there, back + across * (side * 4 * pixel))

@@ -1,0 +1,1 @@
+"""The main window, its commands, and what it does with files."""

@@ -1,0 +1,120 @@
+"""The gallery: thumbnails by class, with a search field."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QIcon, QImage, QPixmap
+from PySide6.QtWidgets import QLineEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from texlab.state.scene import Picture
+
+THUMBNAIL = 48
+_NAME = Qt.ItemDataRole.UserRole
+
+
+class GalleryView(QWidget):
+    """Lists textures by class; ``chosen(name)`` is the name with its ``gallery:`` prefix."""
+
+    chosen = Signal(str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("gallery")
+        self.search = QLineEdit()
+        self.search.setObjectName("gallery-search")
+        self.search.setPlaceholderText("Search textures")
+        self.search.setClearButtonEnabled(True)
+        self.search.setAccessibleName("Search textures")
+        # A picture dropped here is meant for the window.
+        self.search.setAcceptDrops(False)
+        self.tree = QTreeWidget()
+        self.tree.setObjectName("gallery-tree")
+        self.tree.setAccessibleName("Textures of the gallery")
+        self.tree.setHeaderHidden(True)
+        self.tree.setIconSize(QSize(THUMBNAIL, THUMBNAIL))
+        self.tree.setIndentation(8)
+        self.tree.setRootIsDecorated(False)
+        self.tree.setVerticalScrollMode(QTreeWidget.ScrollMode.ScrollPerPixel)
+        self.tree.setUniformRowHeights(False)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        layout.addWidget(self.search)
+        layout.addWidget(self.tree)
+        self._items: dict[str, QTreeWidgetItem] = {}
+        self.thumbnails = 0
+        self.search.textChanged.connect(self._filter)
+        self.tree.itemClicked.connect(self._picked)
+        self.tree.itemActivated.connect(self._picked)
+
+    def show_entries(self, entries: Iterable[tuple[str, str, str, str]]) -> None:
+        """List (name, class, title, tooltip) in the order given."""
+        self.tree.clear()
+        self._items.clear()
+        groups: dict[str, QTreeWidgetItem] = {}
+        for name, group, title, tip in entries:
+            if group not in groups:
+                head = QTreeWidgetItem([group.capitalize()])
+                font = head.font(0)
+                font.setBold(True)
+                head.setFont(0, font)
+                head.setFlags(Qt.ItemFlag.ItemIsEnabled)
+                self.tree.addTopLevelItem(head)
+                head.setExpanded(True)
+                groups[group] = head
+            item = QTreeWidgetItem([title])
+            item.setData(0, _NAME, name)
+            item.setToolTip(0, tip)
+            item.setSizeHint(0, QSize(0, THUMBNAIL + 6))
+            groups[group].addChild(item)
+            self._items[name] = item
+
+    def set_thumbnail(self, name: str, picture: Picture) -> None:
+        """Show the small picture of a texture, (h, w, 3) uint8."""
+        self.thumbnails += 1
+        item = self._items.get(name)
+        if item is not None:
+            height, width = picture.shape[:2]
+            image = QImage(picture.tobytes(), width, height, 3 * width, QImage.Format.Format_RGB888)
+            pixmap = QPixmap.fromImage(image)
+            icon = QIcon(pixmap)
+            # The chosen texture keeps its colours.
+            icon.addPixmap(pixmap, QIcon.Mode.Selected)
+            item.setIcon(0, icon)
+
+    def mark(self, name: str) -> None:
+        """Mark the texture that is the exemplar (none when it is no texture of the gallery)."""
+        item = self._items.get(name)
+        if item is None:
+            self.tree.clearSelection()
+        elif self.tree.currentItem() is not item:
+            self.tree.setCurrentItem(item)
+            self.tree.scrollToItem(item)
+
+    def _picked(self, item: QTreeWidgetItem) -> None:
+        name = item.data(0, _NAME)
+        if name:
+            self.chosen.emit(name)
+        else:
+            item.setExpanded(not item.isExpanded())
+
+    def _filter(self, text: str) -> None:
+        words = text.lower().split()
+        for place in range(self.tree.topLevelItemCount()):
+            head = self.tree.topLevelItem(place)
+            if head is None:
+                continue
+            shown = 0
+            for child_place in range(head.childCount()):
+                item = head.child(child_place)
+                if item is None:
+                    continue
+                haystack = f"{head.text(0)} {item.text(0)} {item.data(0, _NAME)}".lower()
+                match = all(word in haystack for word in words)
+                item.setHidden(not match)
+                shown += match
+            head.setHidden(shown == 0)

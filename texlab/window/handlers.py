@@ -1,0 +1,185 @@
+"""What the menus, the tool bar and the columns' menus do."""
+
+from __future__ import annotations
+
+import secrets
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, Qt, QTimer
+from PySide6.QtWidgets import QMenu
+
+from texlab_core.engine.params import describe
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import MAX_SEED
+from texlab_core.methods.de_bonet.thresholds import ThresholdTable
+from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
+
+if TYPE_CHECKING:
+    from texlab.columns.workspace import Workspace
+    from texlab.runs.controller import Controller
+    from texlab.window.exchange import Exchange
+    from texlab.window.help_desk import HelpDesk
+    from texlab.window.main_window import MainWindow
+    from texlab.window.opener import Opener
+
+TURN_MS = 600
+
+
+class Handlers(QObject):
+    """Turns the user's commands into changes of the session and orders to the controller."""
+
+    def __init__(
+        self,
+        window: MainWindow,
+        workspace: Workspace,
+        controller: Controller,
+        opener: Opener,
+        exchange: Exchange,
+        desk: HelpDesk,
+    ) -> None:
+        super().__init__(window)
+        self._window = window
+        self._workspace = workspace
+        self._controller = controller
+        self._session = controller.session
+        self._opener = opener
+        self._exchange = exchange
+        self._desk = desk
+        self._turned = ""
+        self._turning = QTimer(self)
+        self._turning.setSingleShot(True)
+        self._turning.setInterval(TURN_MS)
+        self._turning.timeout.connect(lambda: self._session.finish_merge(self._turned))
+        for name, handler in self._by_action().items():
+            window.actions_by_name[name].triggered.connect(handler)
+
+    def close(self) -> None:
+        """Wait for nothing any more."""
+        self._turning.stop()
+
+    def _by_action(self) -> dict[str, Any]:
+        session, controller, link = self._session, self._controller, self._workspace.link
+        exchange, desk = self._exchange, self._desk
+
+        def chosen() -> int:
+            return session.selected_id
+
+        handlers: dict[str, Any] = {
+            "open": exchange.ask_open,
+            "paste": exchange.paste,
+            "export": lambda: exchange.export(chosen()),
+            "quit": self._window.close,
+            "undo": session.undo,
+            "redo": session.redo,
+            "copy": lambda: exchange.copy(chosen()),
+            "dice": lambda: session.set_seed(secrets.randbelow(MAX_SEED + 1)),
+            "reset": lambda: controller.reset_params(chosen()),
+            "palette": desk.show_palette,
+            "add": self.choose_new_column,
+            "duplicate": lambda: self.select(session.duplicate_column(chosen())),
+            "remove": lambda: session.remove_column(chosen()),
+            "left": lambda: session.move_column(chosen(), -1),
+            "right": lambda: session.move_column(chosen(), 1),
+            "four": lambda: self.lay_out(FIRST_SIGHT, "the four methods"),
+            "spectra": lambda: self.lay_out(FIG_8, "compare spectra"),
+            "previous": lambda: self._step_column(-1),
+            "next": lambda: self._step_column(1),
+            "run": lambda: controller.run_column(chosen()),
+            "stop": lambda: controller.stop_column(chosen()),
+            "go-on": lambda: controller.go_on(chosen()),
+            "run-all": controller.run_all,
+            "stop-all": controller.stop_all,
+            "fit": link.fit,
+            "actual": link.actual_size,
+            "zoom-in": lambda: link.zoom(1.5),
+            "zoom-out": lambda: link.zoom(1 / 1.5),
+            "tile": self._workspace.set_tiled,
+            "crop": lambda: self._workspace.exemplar.crop_button.click(),
+            "help": lambda: desk.show_help(self._chosen_method()),
+            "help-window": lambda: desk.show_help("window"),
+            "shortcuts": lambda: desk.show_help("shortcuts"),
+            "about": desk.show_about,
+        }
+        for layout in ("explore", "teach", "tune"):
+            handlers[f"layout-{layout}"] = partial(self._arrange, layout)
+        return {name: _without_argument(call) if name != "tile" else call for name, call in handlers.items()}
+
+    def _arrange(self, layout: str) -> None:
+        column = self._session.selected_column
+        fields = describe(type(column.params)) if column is not None else ()
+        table = any(field.type is ThresholdTable for field in fields)
+        self._window.arrange(layout, tuning="thresholds" if table else "histograms")
+        self._workspace.link.fit()
+
+    def turn(self, what: str, change: Any) -> None:
+        """Make ``change(merge=what)``: turns of a number box without a pause are one step of the history."""
+        if what != self._turned:
+            self._session.finish_merge(self._turned)
+        self._turned = what
+        change(merge=what)
+        self._turning.start()
+
+    def choose_method(self, column_id: int, method: str) -> None:
+        """Run another method in a column."""
+        self._session.set_method(column_id, method, methods()[method].params())
+        self._session.select(column_id)
+
+    def column_command(self, column_id: int, name: str) -> None:
+        """Do what was chosen in a column's menu."""
+        session = self._session
+        if name == "duplicate":
+            self.select(session.duplicate_column(column_id))
+        elif name in ("left", "right"):
+            session.move_column(column_id, -1 if name == "left" else 1)
+        elif name == "remove":
+            session.remove_column(column_id)
+        elif name == "export":
+            self._exchange.export(column_id)
+        elif name == "copy":
+            self._exchange.copy(column_id)
+        elif name == "go-on":
+            self._controller.go_on(column_id)
+        elif name == "use":
+            scene = self._controller.column_scene(column_id)
+            if scene is not None and scene.result is not None:
+                self._opener.use_as_exemplar(scene.result)
+
+    def select(self, column_id: int) -> None:
+        """Choose a column and bring it into view."""
+        if column_id:
+            self._session.select(column_id)
+            self._workspace.reveal(column_id)
+
+    def _step_column(self, by: int) -> None:
+        places = [column.id for column in self._session.state.columns]
+        if places:
+            here = places.index(self._session.selected_id)
+            self.select(places[(here + by) % len(places)])
+
+    def lay_out(self, wanted: tuple[str, ...], text: str) -> None:
+        """Show these methods with their defaults, all with the session's seed: the spectral ones share a phase."""
+        self._session.set_columns([(name, methods()[name].params()) for name in wanted], text)
+
+    def choose_new_column(self) -> None:
+        """Offer the methods, then add the chosen one."""
+        menu = QMenu(self._window)
+        menu.setObjectName("new-column-menu")
+        for method in methods().values():
+            action = menu.addAction(method.title)
+            action.setToolTip(method.summary)
+            action.triggered.connect(partial(self._add_column, method.id))
+        button = self._window.toolbar.widgetForAction(self._window.actions_by_name["add"])
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.popup(button.mapToGlobal(button.rect().bottomLeft()))
+
+    def _add_column(self, method: str, _: bool = False) -> None:
+        self.select(self._session.add_column(method, methods()[method].params()))
+
+    def _chosen_method(self) -> str:
+        column = self._session.selected_column
+        return column.method if column is not None else "index"
+
+
+def _without_argument(call: Any) -> Any:
+    return lambda _=False: call()

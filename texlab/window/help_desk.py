@@ -1,0 +1,68 @@
+"""Help pages and what the program says of itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QMessageBox
+
+from texlab.window.help_window import HelpWindow
+from texlab.window.palette import CommandPalette
+from texlab_core.engine.run import versions
+
+if TYPE_CHECKING:
+    from texlab.state.session import Session
+    from texlab.window.main_window import MainWindow
+
+
+class HelpDesk:
+    """Opens the help window (made when it is first wanted), the command palette and the box about the program."""
+
+    def __init__(self, window: MainWindow, session: Session) -> None:
+        self._window = window
+        self._session = session
+        self.help: HelpWindow | None = None
+
+    def show_help(self, page: str) -> None:
+        """Open a help page."""
+        if self.help is None:
+            self.help = HelpWindow(self._window)
+            self.help.knob_wanted.connect(self._show_knob)
+        self.help.open_page(page)
+
+    def show_about(self) -> None:
+        """Say what this is."""
+        box = QMessageBox(self._window)
+        box.setObjectName("about")
+        box.setWindowTitle("About TexLab")
+        found = versions()
+        listed = ", ".join(f"{name} {number}" for name, number in found.items() if name != "texlab")
+        box.setText(
+            f"<b>TexLab {found['texlab']}</b><br>Explorer of example-based texture synthesis.<br><br>"
+            f"MIT licence; the textures of the gallery have their own.<br><br><small>{listed}</small>"
+        )
+        box.open()
+
+    def show_palette(self) -> None:
+        """Open the command palette."""
+        palette = CommandPalette(self._window.actions_by_name.values(), self._window)
+        palette.move(self._window.mapToGlobal(QPoint((self._window.width() - palette.width()) // 2, 80)))
+        palette.show()
+
+    def close(self) -> None:
+        """Close the help window."""
+        if self.help is not None:
+            self.help.close()
+
+    def _show_knob(self, method: str, knob: str) -> None:
+        for column in self._session.state.columns:
+            if column.method == method:
+                self._session.select(column.id)
+                form = self._window.parameters.form
+                if form is not None and knob in form.knobs:
+                    widget = form.knobs[knob]
+                    self._window.parameters.scroll_area.ensureWidgetVisible(widget)
+                    widget.setFocus()
+                self._window.activateWindow()
+                return

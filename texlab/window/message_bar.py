@@ -1,0 +1,67 @@
+"""A line at the top of the window for errors and news; it never interrupts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QWidget
+
+if TYPE_CHECKING:
+    from texlab.style.theme import Theme
+
+NEWS_MS = 6000
+
+
+class MessageBar(QFrame):
+    """Shows one sentence; an error stays until it is closed, news go by themselves."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("message-bar")
+        self.label = QLabel()
+        self.label.setObjectName("message")
+        self.label.setWordWrap(True)
+        self.label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        close = QToolButton()
+        close.setObjectName("message-close")
+        close.setText("✕")
+        close.setAutoRaise(True)
+        close.setAccessibleName("Close the message")
+        close.clicked.connect(self.hide)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(10, 4, 6, 4)
+        layout.addWidget(self.label, 1)
+        layout.addWidget(close)
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(NEWS_MS)
+        self._timer.timeout.connect(self.hide)
+        self._kind: Literal["problem", "news"] = "news"
+        self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
+        self.hide()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._colours = {"problem": theme.error, "news": theme.accent}
+        self._paint()
+
+    def tell(self, sentence: str, kind: Literal["problem", "news"]) -> None:
+        """Show a sentence."""
+        self._kind = kind
+        self._paint()
+        self.label.setText(sentence)
+        self.show()
+        if kind == "news":
+            self._timer.start()
+        else:
+            self._timer.stop()
+
+    def _paint(self) -> None:
+        colour = self._colours[self._kind]
+        self.setStyleSheet(f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; }}")
+
+    def hideEvent(self, event: object) -> None:
+        """Stop the clock."""
+        self._timer.stop()
+        super().hideEvent(event)  # type: ignore[arg-type]

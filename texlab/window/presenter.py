@@ -1,0 +1,158 @@
+"""What the session and the running columns look like in the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from texlab.style.pictures import describe_pixel
+from texlab_core.engine.registry import methods
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from texlab.columns.overlays import Overlays
+    from texlab.columns.workspace import Workspace
+    from texlab.docks.host import DockHost
+    from texlab.presets.manager import PresetManager
+    from texlab.runs.controller import Controller
+    from texlab.runs.exemplar import Prepared
+    from texlab.state.scene import Mark, Scene
+    from texlab.storage.settings import Settings
+    from texlab.style.theme import Theme
+    from texlab.window.main_window import MainWindow
+
+
+class Presenter(QObject):
+    """Hands the session, the exemplar and the newest scene to the views.
+
+    ``painted()`` after every scene; ``recent_chosen(path)`` when a recent file is wanted.
+    """
+
+    painted = Signal()
+    recent_chosen = Signal(object)
+
+    def __init__(
+        self,
+        window: MainWindow,
+        workspace: Workspace,
+        controller: Controller,
+        settings: Settings,
+        presets: PresetManager,
+        overlays: Overlays,
+        hosts: Sequence[DockHost],
+    ) -> None:
+        super().__init__(window)
+        self._window = window
+        self._workspace = workspace
+        self._controller = controller
+        self._session = controller.session
+        self._settings = settings
+        self._presets = presets
+        self._overlays = overlays
+        self._hosts = hosts
+        self._shown_exemplar = ""
+
+    def show_session(self) -> None:
+        """Follow the session: values, form, presets, what is chosen."""
+        column = self._session.selected_column
+        self._window.show_session(self._session)
+        method = methods()[column.method] if column is not None else None
+        self._window.parameters.show_column(
+            self._session.selected_id, method, column.params if column is not None else None
+        )
+        self._presets.show_method(column.method if column is not None else "")
+        self._show_choice()
+
+    def show_exemplar(self, prepared: Prepared) -> None:
+        """Show another exemplar."""
+        self._workspace.exemplar.show_source(prepared.source_picture)
+        self._show_choice()
+
+    def show_scene(self, scene: Scene) -> None:
+        """Show the columns and everything about them."""
+        sizes = self._session.state.size, self._source_size()
+        height, width = (max(sides) for sides in zip(*sizes, strict=True))
+        self._workspace.link.set_extent(height, width, min(map(min, sizes)))
+        self._workspace.show_scene(scene)
+        self._window.parameters.show_scene(scene.selected)
+        self._overlays.show_scene(scene)
+        for host in self._hosts:
+            host.show_scene(scene)
+        counts = [column.status for column in scene.columns]
+        texts = [
+            f"{counts.count(status)} {word}"
+            for status, word in (("running", "running"), ("waiting", "waiting"), ("failed", "failed"))
+            if status in counts
+        ]
+        self._window.jobs_label.setText(" · ".join(texts) or "ready")
+        scene_chosen = scene.selected
+        finished = scene_chosen is not None and scene_chosen.result is not None
+        self._window.actions_by_name["export"].setEnabled(finished)
+        self.painted.emit()
+
+    def show_marks(self, marks: tuple[Mark, ...]) -> None:
+        """Outline places in the exemplar."""
+        sample = self._session.state.sample
+        crop = sample.crop if sample is not None else None
+        # Methods see the crop; the pane shows the whole source.
+        self._workspace.exemplar.pane.set_marks(marks, (0.0, 0.0) if crop is None else (crop.top, crop.left))
+
+    def show_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._workspace.set_theme(theme)
+        for host in self._hosts:
+            host.dock.set_theme(theme)
+
+    def say_exemplar_pixel(self, row: int, column: int) -> None:
+        """Say what is under the pointer in the exemplar."""
+        prepared = self._controller.prepared
+        text = ""
+        if prepared is not None and row >= 0:
+            pixels = prepared.source_scaled.pixels
+            if row < pixels.shape[0] and column < pixels.shape[1]:
+                text = "exemplar " + describe_pixel(pixels, row, column)
+        self._window.pixel_label.setText(text)
+
+    def say_column_pixel(self, column_id: int, row: int, column: int) -> None:
+        """Say what is under the pointer in a column."""
+        scene = self._controller.column_scene(column_id)
+        text = ""
+        if scene is not None and scene.image is not None and row >= 0:
+            height, width = scene.image.shape[:2]
+            if row < height and column < width:
+                text = describe_pixel(scene.image, row, column)
+                maps = scene.result.maps if scene.result is not None else {}
+                if "source" in maps:
+                    origin = maps["source"].data[row, column]
+                    text += f"   from exemplar {origin[1]}, {origin[0]}"
+                if "candidates" in maps:
+                    text += f"   candidates {maps['candidates'].data[row, column]}"
+        self._window.pixel_label.setText(text)
+
+    def _show_choice(self) -> None:
+        sample = self._session.state.sample
+        if sample is None:
+            return
+        name = sample.source.name
+        prepared = self._controller.prepared
+        parts = []
+        if prepared is not None:
+            height, width = prepared.exemplar.size
+            kind = "gray" if prepared.exemplar.channels == 1 else "colour"
+            parts = [f"{width} x {height} {kind}", *sample.source.notes]
+        self._workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
+        self._window.actions_by_name["crop"].setChecked(sample.crop is not None)
+        if name != self._shown_exemplar:
+            if self._shown_exemplar:
+                # What was said was about the exemplar before.
+                self._window.message_bar.hide()
+            self._shown_exemplar = name
+            self._window.gallery.mark(name)
+            self._window.setWindowTitle(f"{name.removeprefix('gallery:')} - TexLab")
+            self._window.show_recent(self._settings.recent, lambda path, _=False: self.recent_chosen.emit(path))
+
+    def _source_size(self) -> tuple[int, int]:
+        prepared = self._controller.prepared
+        return prepared.source_scaled.size if prepared is not None else (1, 1)

@@ -1,0 +1,200 @@
+"""Read recipes from saved results; whatever the file holds, the answer is a checked recipe or one sentence."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from texlab_core.documents.embedding import MAX_DATA_DEPTH
+from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.params import frozen_mapping
+from texlab_core.engine.registry import Method, find_method
+from texlab_core.engine.run import check_seed, check_size
+from texlab_core.errors import InputError, NoRecipeError, RecipeError
+from texlab_core.files import strict_json
+from texlab_core.files.wording import sentence_case
+from texlab_core.images.formats.png_text import SIGNATURE, read_text
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+KEY = "texlab"
+MAX_BYTES = 32 * 2**20
+_MAX_NAME = 4096
+_MAX_VERSIONS = 64
+_MAX_SIDE = 2**26
+_HASH = re.compile(r"[0-9a-f]{64}")
+
+
+def sidecar(path: str | os.PathLike[str]) -> Path:
+    """Return where the recipe of an image lies whose format holds no text."""
+    return Path(path).with_suffix(".texlab.json")
+
+
+def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
+    """Read the recipe of a saved result.
+
+    Parameters
+    ----------
+    source
+        Path or bytes of a PNG or TIFF, path of a JPEG with its ``.texlab.json`` beside it, or such a file itself.
+
+    Raises
+    ------
+    RecipeError
+        When there is none, or it is malformed, from a newer version, or for something that does not exist here.
+    """
+    if isinstance(source, bytes):
+        return _parse(_find(io.BytesIO(source), None, "the file"), "the file")
+    path = Path(source)
+    name = path.name
+    try:
+        if path.is_dir():
+            raise RecipeError(f"{source}: is a folder, not a saved result.")
+        if not path.is_file():
+            raise RecipeError(f"{source}: there is no such file.")
+        with open(path, "rb") as file:
+            return _parse(_find(file, path, name), name)
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise RecipeError(f"{source}: cannot be opened ({reason}).") from error
+
+
+def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
+    """Return the text of the recipe, wherever the format keeps it."""
+    head = file.read(16)
+    file.seek(0)
+    found: str | bytes | None = None
+    try:
+        if head.startswith(SIGNATURE):
+            found = read_text(file, KEY, MAX_BYTES)
+        elif head.startswith((b"II", b"MM")):
+            found = _tiff_description(file)
+        elif head.startswith(b"\xff\xd8\xff") and path is not None and sidecar(path).is_file():
+            with open(sidecar(path), "rb") as beside:
+                found = beside.read(MAX_BYTES + 1)
+        elif head.lstrip()[:1] == b"{":
+            found = file.read(MAX_BYTES + 1)
+    except ValueError as error:
+        raise RecipeError(f"The recipe of {name} {error}.") from error
+    if found is None:
+        raise NoRecipeError(f"{sentence_case(name)} holds no recipe; only results that TexLab saved do.")
+    return found
+
+
+def _tiff_description(file: BinaryIO) -> str | None:
+    import tifffile
+
+    try:
+        with tifffile.TiffFile(file, name="result.tif") as tiff:
+            page: Any = tiff.pages[0]
+            tag = page.tags.get("ImageDescription")
+            if tag is None or tag.count > MAX_BYTES:
+                return None
+            text = tag.value
+    except Exception as error:
+        # tifffile raises all kinds of errors on damaged files.
+        raise ValueError("is damaged") from error
+    return text if isinstance(text, str) and text.startswith("{") else None
+
+
+def _parse(text: str | bytes, name: str) -> Recipe:
+    what = f"the recipe of {name}"
+    data = strict_json.loads(text, what=what, max_bytes=MAX_BYTES, max_depth=MAX_DATA_DEPTH + 8, error=RecipeError)
+    try:
+        return _recipe(data)
+    except InputError as error:
+        raise RecipeError(f"{sentence_case(what)} is not usable: {error}") from error
+
+
+def _recipe(data: Any) -> Recipe:
+    if not isinstance(data, dict) or "texlab" not in data:
+        raise RecipeError("it is not one of TexLab.")
+    if (version := data["texlab"]) != VERSION or isinstance(version, bool):
+        raise RecipeError(f"it has version {version!r:.20}, and this TexLab reads version {VERSION}.")
+    name = _get(data, "method", str)
+    method = find_method(name)
+    size = _get(data, "size", dict)
+    return Recipe(
+        method=name,
+        params=method.params.from_json(_get(data, "params", dict)),
+        size=check_size((size.get("height"), size.get("width"))),
+        seed=check_seed(data.get("seed")),
+        versions=_versions(data.get("versions", {})),
+        inputs=_inputs(_get(data, "inputs", dict), method),
+    )
+
+
+def _get(data: dict[str, Any], key: str, kind: type[Any]) -> Any:
+    value = data.get(key)
+    if not isinstance(value, kind):
+        noun = {str: "a text", dict: "an object", int: "a whole number", float: "a number"}[kind]
+        raise RecipeError(f"{key} must be {noun}, got {value!r:.40}.")
+    return value
+
+
+def _versions(data: Any) -> Mapping[str, str]:
+    usable = isinstance(data, dict) and len(data) <= _MAX_VERSIONS
+    texts = [*data, *data.values()] if usable else []
+    if not usable or not all(isinstance(each, str) and len(each) <= 100 and each.isprintable() for each in texts):
+        raise RecipeError("versions must be a few texts by name.")
+    return frozen_mapping(data)
+
+
+def _inputs(data: dict[str, Any], method: Method) -> Mapping[str, RecipeInput]:
+    specs = {spec.name: spec for spec in method.inputs}
+    found: dict[str, RecipeInput] = {}
+    for role, entry in data.items():
+        if role not in specs:
+            raise RecipeError(f"{method.title} takes no input {role!r:.40}, only {', '.join(specs)}.")
+        if not isinstance(entry, dict):
+            raise RecipeError(f"the input {role} must be an object, got {entry!r:.40}.")
+        found[role] = _input(role, entry, specs[role].kind)
+    for spec in method.inputs:
+        if spec.required and spec.name not in found:
+            raise RecipeError(f"the input {spec.name} is missing.")
+    return frozen_mapping(found)
+
+
+def _input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
+    if _get(entry, "kind", str) != kind:
+        raise RecipeError(f"the input {role} must be of kind {kind}, got {entry['kind']!r:.40}.")
+    name, sha256 = _get(entry, "name", str), _get(entry, "sha256", str)
+    if len(name) > _MAX_NAME or not name.isprintable():
+        raise RecipeError(f"the name of the input {role} must be one line of at most {_MAX_NAME} characters.")
+    if not _HASH.fullmatch(sha256):
+        raise RecipeError(f"the sha256 of the input {role} must be 64 hexadecimal digits, got {sha256!r:.40}.")
+    keys = {"image": ("source", "pixels"), "arrays": ("arrays",), "data": ("data",)}[kind]
+    content = {key: entry[key] for key in keys if key in entry}
+    if kind != "image":
+        return RecipeInput(role, kind, name, sha256, None, 1.0, None, frozen_mapping(content))
+    for packed in content.values():
+        if not isinstance(packed, dict):
+            raise RecipeError(f"the pixels of the input {role} must be an object, got {packed!r:.40}.")
+    size = _get(entry, "size", dict)
+    shape = check_size((size.get("height"), size.get("width")))
+    scale, crop = _scale(entry.get("scale", 1.0)), _crop(entry.get("crop"))
+    return RecipeInput(role, kind, name, sha256, shape, scale, crop, frozen_mapping(content))
+
+
+def _scale(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
+        raise RecipeError(f"scale must be above 0 and at most 1, got {value!r:.40}.")
+    return float(value)
+
+
+def _crop(data: Any) -> Crop | None:
+    if data is None:
+        return None
+    sides = ("top", "left", "height", "width")
+    if not isinstance(data, dict) or not all(
+        type(data.get(side)) is int and 0 <= data[side] <= _MAX_SIDE for side in sides
+    ):
+        raise RecipeError("crop must have top, left, height and width in whole pixels.")
+    return Crop(*(data[side] for side in sides))

@@ -1,0 +1,214 @@
+"""Recipes: what a saved result was made from and how, and how to make it again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from texlab_core.documents.embedding import embed, unpack_arrays, unpack_pixels
+from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
+from texlab_core.engine.run import Job, versions
+from texlab_core.errors import InputError, RecipeError
+from texlab_core.images.exemplar import as_exemplar, take
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from texlab_core.engine.params import Params
+    from texlab_core.engine.steps import Result
+    from texlab_core.images.exemplar import Source
+
+VERSION = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecipeInput:
+    """One input as a recipe has it.
+
+    Parameters
+    ----------
+    role
+        Which input of the method it is ("exemplar").
+    kind
+        "image", "data" or "arrays".
+    name, sha256
+        Of the input that was used.
+    size
+        Height and width of an image.
+    scale, crop
+        How the image was taken from its source.
+    content
+        The encoded source, pixels, arrays or data, under its key; empty when the file does not hold it.
+    """
+
+    role: str
+    kind: str
+    name: str
+    sha256: str
+    size: tuple[int, int] | None
+    scale: float
+    crop: Crop | None
+    content: Mapping[str, Any]
+
+    @property
+    def is_embedded(self) -> bool:
+        """Whether the recipe holds the input itself."""
+        return bool(self.content)
+
+    def restore(self, *, force: bool = False) -> Input:
+        """Return the embedded input.
+
+        Raises
+        ------
+        RecipeError
+            When it is not embedded, malformed, or (unless ``force``) has another hash.
+        """
+        if not self.content:
+            raise RecipeError(f"The recipe lacks {self.described}, which was too large to be kept in the file.")
+        found = self._unpack()
+        if found.sha256 != self.sha256 and not force:
+            raise RecipeError(
+                f"The recipe's input {self.name} is not the one that was used (another hash): the file was "
+                "changed, or it was made with another version of the libraries."
+            )
+        return found
+
+    def _unpack(self) -> Input:
+        if self.kind == "arrays":
+            return ArraysInput(unpack_arrays(self.content["arrays"], self.name), self.name)
+        if self.kind == "data":
+            return DataInput(self.content["data"], self.name)
+        try:
+            if "source" in self.content:
+                return take(unpack_pixels(self.content["source"], self.name), self.name, self.crop, self.scale)
+            return take(unpack_pixels(self.content["pixels"], self.name), self.name)
+        except RecipeError:
+            raise
+        except InputError as error:
+            raise RecipeError(f"The recipe's input {error}") from error
+
+    def match(self, given: Source, *, force: bool = False) -> ImageInput:
+        """Return an image from outside as this input.
+
+        It must have the hash of the one that was used, as it is or after the recipe's scale and crop; with
+        ``force`` any image is taken as it is.
+
+        Raises
+        ------
+        RecipeError
+            When it is another image.
+        ImageError
+            When it cannot be read.
+        """
+        image = as_exemplar(given)
+        if image.sha256 == self.sha256:
+            return image
+        if self.scale != 1 or self.crop is not None:
+            try:
+                taken = as_exemplar(image, crop=self.crop, scale=self.scale)
+            except InputError:
+                taken = image
+            if taken.sha256 == self.sha256:
+                return taken
+        if not force:
+            raise RecipeError(f"{image.name} is not the image of the recipe, which is {self.described}.")
+        return image
+
+    @property
+    def described(self) -> str:
+        """Role, name, size and hash, for messages."""
+        size = "" if self.size is None else f"{self.size[1]} x {self.size[0]} pixels, "
+        return f"the {self.role} {self.name} ({size}SHA-256 {self.sha256[:12]}...)"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recipe:
+    """Everything that is needed to make a result again; every value was checked.
+
+    Parameters
+    ----------
+    method
+        Id of a registered method.
+    params
+        Its parameters; those that the file does not have take their defaults.
+    size
+        Height and width of the result.
+    seed
+        0 .. 2147483647.
+    versions
+        Of the program and the libraries that made the result.
+    inputs
+        By role.
+    """
+
+    method: str
+    params: Params
+    size: tuple[int, int]
+    seed: int
+    versions: Mapping[str, str]
+    inputs: Mapping[str, RecipeInput]
+
+    @property
+    def missing(self) -> tuple[RecipeInput, ...]:
+        """The inputs that the file does not hold."""
+        return tuple(each for each in self.inputs.values() if not each.is_embedded)
+
+    @property
+    def other_versions(self) -> Mapping[str, tuple[str, str]]:
+        """Versions that differ, then and today; the same bits are promised only when there are none."""
+        today = versions()
+        return {name: (then, today[name]) for name, then in self.versions.items() if today.get(name, then) != then}
+
+    def job(
+        self, exemplar: Source | None = None, *, given: Mapping[str, Source] | None = None, force: bool = False
+    ) -> Job:
+        """Return the job that makes the result again.
+
+        Parameters
+        ----------
+        exemplar
+            Used instead of the embedded one, and needed when there is none. It must be the image of the recipe: as
+            it was used, or the source that the recipe scales and crops. It also stands in for missing inputs with
+            its hash.
+        given
+            Other images, by role, in the same way.
+        force
+            Take the given images whatever their hash.
+
+        Raises
+        ------
+        RecipeError
+            When an input is missing, damaged, or another one than the recipe's.
+        """
+        images = dict(given or {})
+        if exemplar is not None:
+            images["exemplar"] = exemplar
+        for role in images:
+            if role not in self.inputs or self.inputs[role].kind != "image":
+                raise RecipeError(f"The recipe has no image called {role}.")
+        found = {role: self.inputs[role].match(image, force=force) for role, image in images.items()}
+        # An image that is grown outward is its own exemplar: one may stand in for several inputs.
+        same = {self.inputs[role].sha256: image for role, image in found.items()}
+        inputs: dict[str, Input] = {}
+        for role, each in self.inputs.items():
+            stand_in = found.get(role) or (None if each.is_embedded else same.get(each.sha256))
+            inputs[role] = each.restore(force=force) if stand_in is None else stand_in
+        try:
+            return Job(method=self.method, inputs=inputs, params=self.params, size=self.size, seed=self.seed)
+        except InputError as error:
+            raise RecipeError(f"The recipe cannot be followed: {error}") from error
+
+
+def recipe_json(result: Result) -> dict[str, Any]:
+    """Return the recipe of a result as JSON data, with its inputs."""
+    job = result.job
+    height, width = job.size
+    return {
+        "texlab": VERSION,
+        "method": job.method,
+        "params": job.params.to_json(),
+        "size": {"width": width, "height": height},
+        "seed": job.seed,
+        "versions": dict(result.versions),
+        "inputs": {role: embed(each) for role, each in job.inputs.items()},
+    }

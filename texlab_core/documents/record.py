@@ -1,0 +1,103 @@
+"""Results as files, and back: images that carry their recipe, maps and curves, and a summary as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from texlab_core.documents.reading import KEY, read_recipe, sidecar
+from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
+from texlab_core.engine.inputs import ImageInput
+from texlab_core.files.whole import write_together
+from texlab_core.images.formats.maps import save_maps
+from texlab_core.images.formats.writing import check_format, encode_image, write_image
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from texlab_core.engine.steps import Result
+    from texlab_core.images.formats.writing import Bits
+
+__all__ = ["Recipe", "RecipeInput", "read_recipe", "save_maps", "save_result", "summary"]
+
+
+def save_result(result: Result, path: str | os.PathLike[str], *, bits: Bits = 8) -> None:
+    """Save a result's image with its recipe.
+
+    A PNG has the recipe as a text chunk, a TIFF as its description, and a JPEG as a file ``.texlab.json`` beside
+    it. The recipe holds every input up to 2 MB.
+
+    Parameters
+    ----------
+    result
+        What to save.
+    path
+        Ends in .png, .tif, .tiff, .jpg or .jpeg.
+    bits
+        8, 16 or "float" (TIFF only) for each sample.
+
+    Raises
+    ------
+    ImageError
+        When the format is unknown or cannot hold what is asked.
+    InputError
+        When a file cannot be written.
+    """
+    suffix = check_format(path, bits)
+    recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
+    if suffix in (".jpg", ".jpeg"):
+        write_together(
+            {
+                sidecar(path): recipe.encode(),
+                Path(path): encode_image(path, result.image, bits=bits),
+            }
+        )
+    else:
+        write_image(path, result.image, bits=bits, text={KEY: recipe})
+
+
+def summary(result: Result, out: str | os.PathLike[str] | None) -> dict[str, Any]:
+    """Return the object that ``texlab synth --json`` prints; numbers that are not finite are null.
+
+    Parameters
+    ----------
+    result
+        What was made.
+    out
+        Where it was saved, if it was.
+    """
+    job = result.job
+    height, width = job.size
+    exemplar = job.inputs.get("exemplar")
+    return {
+        "method": job.method,
+        "parameters": job.params.to_json(),
+        "size": {"width": width, "height": height},
+        "seed": job.seed,
+        "elapsed_s": float(result.elapsed_s),
+        "out": None if out is None else os.fspath(out),
+        "exemplar": _exemplar(exemplar) if isinstance(exemplar, ImageInput) else None,
+        "curves": {
+            name: {
+                "title": curve.title,
+                "x_label": curve.x_label,
+                "y_label": curve.y_label,
+                "x": _numbers(curve.x),
+                "y": _numbers(curve.y),
+            }
+            for name, curve in result.curves.items()
+        },
+        "measures": dict(zip(result.measures, _numbers(result.measures.values()), strict=True)),
+    }
+
+
+def _exemplar(exemplar: ImageInput) -> dict[str, Any]:
+    height, width = exemplar.size
+    return {"name": exemplar.name, "sha256": exemplar.sha256, "size": {"width": width, "height": height}}
+
+
+def _numbers(values: Iterable[Any]) -> list[float | None]:
+    return [float(value) if math.isfinite(value) else None for value in values]

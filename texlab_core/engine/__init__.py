@@ -1,0 +1,1 @@
+"""Parameters, inputs, jobs, the registry, and the only loop that drives a method."""

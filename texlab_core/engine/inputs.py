@@ -1,0 +1,140 @@
+"""The named, hashed, read-only things that a job works on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from texlab_core.engine.params import frozen_mapping
+from texlab_core.files.wording import printable
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from texlab_core.engine.steps import FloatImage
+
+
+@dataclass(frozen=True, slots=True)
+class Crop:
+    """A rectangle in the scaled source, in pixels: top row, left column, height, width."""
+
+    top: int
+    left: int
+    height: int
+    width: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Origin:
+    """Where an exemplar was taken from: the source image, scaled first, then cropped.
+
+    Parameters
+    ----------
+    pixels
+        The whole source, (H, W, C) float32 in [0, 1], read-only.
+    scale
+        Factor applied to both sides of the source, 0 < scale <= 1.
+    crop
+        Part of the scaled source, or None for all of it.
+    """
+
+    pixels: FloatImage
+    scale: float = 1.0
+    crop: Crop | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImageInput:
+    """An image as methods get it.
+
+    Parameters
+    ----------
+    pixels
+        (H, W, C) float32 in [0, 1], C-contiguous, read-only; C is 1 (gray) or 3 (RGB).
+    name
+        For people and recipes ("gallery:structured-pebbles", "wall.jpg").
+    sha256
+        Hash of shape and values; caches and recipes use it.
+    origin
+        The source it was scaled and cropped from, when that is known.
+    notes
+        What was converted on the way in, one sentence each.
+    """
+
+    pixels: FloatImage
+    name: str
+    sha256: str
+    origin: Origin | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", printable(self.name))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Height and width."""
+        return self.pixels.shape[0], self.pixels.shape[1]
+
+    @property
+    def channels(self) -> int:
+        """1 (gray) or 3 (RGB)."""
+        return int(self.pixels.shape[2])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DataInput:
+    """A small JSON document as input: a code of 69 numbers, say."""
+
+    data: Any
+    name: str
+    sha256: str = field(default="")
+
+    def __post_init__(self) -> None:
+        text = json.dumps(self.data, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        object.__setattr__(self, "name", printable(self.name))
+        object.__setattr__(self, "sha256", hashlib.sha256(text.encode()).hexdigest())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArraysInput:
+    """Named arrays as input: a state to go on from. The arrays are copied and made read-only."""
+
+    arrays: Mapping[str, NDArray[Any]]
+    name: str
+    sha256: str = field(default="")
+
+    def __post_init__(self) -> None:
+        copies = {}
+        for key in sorted(self.arrays):
+            copies[key] = np.array(self.arrays[key], order="C", copy=True)
+            copies[key].flags.writeable = False
+        object.__setattr__(self, "name", printable(self.name))
+        object.__setattr__(self, "arrays", frozen_mapping(copies))
+        object.__setattr__(self, "sha256", hash_arrays(copies))
+
+
+Input = ImageInput | DataInput | ArraysInput
+Inputs = Mapping[str, Input]
+
+
+def hash_arrays(arrays: Mapping[str, NDArray[Any]]) -> str:
+    """Return the SHA-256 of names, shapes, types and values."""
+    digest = hashlib.sha256()
+    for key in sorted(arrays):
+        value = np.ascontiguousarray(arrays[key])
+        digest.update(f"{key}:{value.shape}:{value.dtype.str};".encode())
+        digest.update(value.view(np.uint8).reshape(-1).data if value.size else b"")
+    return digest.hexdigest()
+
+
+def exemplar_of(inputs: Inputs) -> ImageInput:
+    """Return the input called ``exemplar``; raises ``KeyError`` when a job lacks it (checked by ``Job``)."""
+    exemplar = inputs["exemplar"]
+    if not isinstance(exemplar, ImageInput):
+        raise TypeError("The exemplar must be an ImageInput.")
+    return exemplar

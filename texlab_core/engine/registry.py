@@ -1,0 +1,128 @@
+"""The synthesis methods: every file of ``methods/``, and every ``method*.py`` of its folders, registers itself."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import importlib
+import pkgutil
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+from texlab_core.engine.steps import FloatImage, Output, Step
+from texlab_core.errors import ParamError
+
+if TYPE_CHECKING:
+    from texlab_core.engine.params import Params
+
+Steps = Generator[Step, None, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class InputSpec:
+    """One named input that a method takes."""
+
+    name: str
+    help: str
+    kind: Literal["image", "data", "arrays"] = "image"
+    required: bool = True
+
+
+EXEMPLAR = InputSpec("exemplar", "The texture to make more of.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A synthesis method.
+
+    Parameters
+    ----------
+    id
+        Lower-case words with hyphens; used on the command line and in recipes.
+    title
+        For people.
+    summary
+        One sentence: what it does.
+    reference
+        The paper.
+    params
+        Its ``Params`` class.
+    analyze
+        ``analyze(inputs, params)``: generator of Steps that returns the model. Deterministic; it depends on
+        the inputs and on the parameters of stage ``analysis`` only.
+    synthesize
+        ``synthesize(model, inputs, params, size, streams)``: generator of Steps that returns an ``Output``.
+    fails_on
+        What it is known to fail on, one phrase each.
+    inputs
+        The named inputs.
+    check
+        ``check(inputs, params, size)`` raises ``InputError`` for combinations that cannot work.
+    draft
+        ``draft(inputs, params, size, seed)`` returns within about 100 ms a picture, possibly smaller than
+        ``size``, that shows what the parameters do; no result, and none to keep. None where smaller jobs serve.
+    rehearsals
+        Parameters with which a tiny run needs compiled code that a run with the defaults does not.
+    order
+        Place in lists and in the first columns of the window.
+    random
+        False when no bit of the result depends on the seed.
+    """
+
+    id: str
+    title: str
+    summary: str
+    reference: str
+    params: type[Params]
+    analyze: Callable[..., Steps]
+    synthesize: Callable[..., Generator[Step, None, Output]]
+    fails_on: tuple[str, ...] = ()
+    inputs: tuple[InputSpec, ...] = (EXEMPLAR,)
+    check: Callable[..., None] | None = None
+    draft: Callable[..., FloatImage] | None = None
+    rehearsals: tuple[Params, ...] = ()
+    order: int = 100
+    random: bool = True
+
+
+_METHODS: dict[str, Method] = {}
+
+
+def register(method: Method) -> Method:
+    """Add a method; a second one with the same id is a programming error."""
+    if method.id in _METHODS:
+        raise RuntimeError(f"A method with the id {method.id!r} is registered already.")
+    _METHODS[method.id] = method
+    return method
+
+
+@functools.cache
+def methods() -> Mapping[str, Method]:
+    """Return every registered method by id, in their order; imports what declares them once."""
+    package = importlib.import_module("texlab_core.methods")
+    for each in pkgutil.iter_modules(package.__path__):
+        module = importlib.import_module(f"{package.__name__}.{each.name}")
+        if each.ispkg:
+            for inner in pkgutil.iter_modules(module.__path__):
+                if inner.name.split("_")[0] == "method":
+                    importlib.import_module(f"{module.__name__}.{inner.name}")
+    ordered = sorted(_METHODS.values(), key=lambda method: (method.order, method.id))
+    return MappingProxyType({method.id: method for method in ordered})
+
+
+def find_method(name: str) -> Method:
+    """Return the method with this id.
+
+    Raises
+    ------
+    ParamError
+        When there is none; the message lists the ids.
+    """
+    known = methods()
+    if isinstance(name, str) and name in known:
+        return known[name]
+    close = difflib.get_close_matches(str(name), known, n=1)
+    hint = f" (did you mean {close[0]}?)" if close else ""
+    raise ParamError("method", f"one of {', '.join(known)}{hint}", name)

@@ -1,0 +1,1 @@
+"""Images: the one door in, the gallery, the formats."""

@@ -1,0 +1,276 @@
+"""De Bonet: sampling every spatial frequency band conditioned on all the coarser ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import Method, register
+from texlab_core.methods.de_bonet.thresholds import MAX_K, ThresholdTable
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.run import Streams
+    from texlab_core.engine.steps import Output, Step
+    from texlab_core.methods.de_bonet.analysis import Analysis
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeBonetParams(Params):
+    """Parameters of De Bonet's multiresolution sampling."""
+
+    alpha: Annotated[
+        float,
+        Knob(
+            help="How different two parent structures may be and still count as the same; 0 copies.",
+            low=0,
+            high=4,
+            step=0.005,
+            linear_to=0.5,
+            source="De Bonet 1997, eq. 13",
+            group="Thresholds",
+        ),
+    ] = 0.15
+    beta: Annotated[
+        float,
+        Knob(
+            help="How much stricter fine levels are than coarse ones: T = α / k^β, k = 1 at the coarsest.",
+            low=0,
+            high=2,
+            step=0.05,
+            source="De Bonet 1997, eq. 13",
+            group="Thresholds",
+        ),
+    ] = 0.0
+    thresholds: Annotated[
+        ThresholdTable,
+        Knob(
+            help="Cells of the threshold table that do not follow the law.",
+            source="De Bonet 1997, eq. 11",
+            group="Thresholds",
+        ),
+    ] = ThresholdTable()  # noqa: RUF009 - immutable
+    siblings: Annotated[
+        Literal["parity", "literal", "mixed"],
+        Knob(
+            help="Which children of a matching location are candidates.",
+            choices={
+                "parity": "the one in the same place among its siblings; α = 0 copies exactly",
+                "literal": "all four, as printed; shuffles siblings even at α = 0",
+                "mixed": "all four on the coarsest levels, the same place on the others",
+            },
+            source="De Bonet 1997, pseudo-code",
+            group="Sampling",
+        ),
+    ] = "parity"
+    literal_levels: Annotated[
+        int,
+        Knob(
+            help="How many of the coarsest sampled levels take all four children.",
+            low=1,
+            high=MAX_K,
+            when=("siblings", ("mixed",)),
+            group="Sampling",
+        ),
+    ] = 1
+    coarsest: Annotated[
+        Literal["shift", "tile", "iid"],
+        Knob(
+            help="How the coarsest level fills a larger output.",
+            choices={
+                "shift": "repeated, every repetition shifted cyclically at random",
+                "tile": "repeated as it is; the tiling shows",
+                "iid": "every location drawn at random",
+            },
+            source="De Bonet 1997, section 4.3",
+            group="Sampling",
+        ),
+    ] = "shift"
+    tileable: Annotated[
+        bool, Knob(help="Collapse with periodic borders, so that the output tiles.", group="Sampling")
+    ] = False
+    coarsest_side: Annotated[
+        int,
+        Knob(
+            help="Smallest side of the coarsest level.",
+            low=1,
+            high=64,
+            unit="px",
+            log=True,
+            stage="analysis",
+            group="Pyramid",
+        ),
+    ] = 8
+    fit_filters: Annotated[
+        bool,
+        Knob(help="Stop the pyramid where the filters no longer fit.", stage="analysis", group="Pyramid"),
+    ] = True
+    border: Annotated[
+        Literal["reflect", "periodic", "smooth"],
+        Knob(
+            help="How the pyramid sees the exemplar beyond its border.",
+            stage="analysis",
+            choices={
+                "reflect": "mirrored",
+                "periodic": "repeated",
+                "smooth": "repeated, after removing the smooth component that makes opposite borders differ",
+            },
+            group="Pyramid",
+        ),
+    ] = "reflect"
+    filters: Annotated[
+        Literal["both", "first", "second", "laplacian"],
+        Knob(
+            help="Features of a parent structure beside its Laplacian bands.",
+            stage="analysis",
+            choices={
+                "both": "first and second derivatives: edges and lines",
+                "first": "first derivatives: edges",
+                "second": "second derivatives: lines",
+                "laplacian": "none: the paper's counterexample",
+            },
+            source="De Bonet 1997, section 4.2",
+            group="Features",
+        ),
+    ] = "both"
+    orientations: Annotated[
+        int,
+        Knob(
+            help="Directions of each derivative.",
+            low=2,
+            high=8,
+            stage="analysis",
+            when=("filters", ("both", "first", "second")),
+            group="Features",
+        ),
+    ] = 4
+    filter_size: Annotated[
+        int,
+        Knob(
+            help="Side of the derivative filters; their σ is (size - 1) / 4.",
+            low=3,
+            high=9,
+            unit="px",
+            odd=True,
+            stage="analysis",
+            when=("filters", ("both", "first", "second")),
+            group="Features",
+        ),
+    ] = 5
+    channels: Annotated[
+        Literal["all", "luminance"],
+        Knob(
+            help="Which channels constrain; colours always move together.",
+            stage="analysis",
+            choices={"all": "each channel has its own features", "luminance": "features of the luminance alone"},
+            group="Features",
+        ),
+    ] = "all"
+    normalization: Annotated[
+        Literal["variance", "level", "range", "sum"],
+        Knob(
+            help="What squared feature differences are divided by, Z.",
+            stage="analysis",
+            choices={
+                "variance": "the variance of the feature at its level",
+                "level": "one constant per level: the mean variance of its features",
+                "range": "the squared range of the feature at its level",
+                "sum": "the literal sum over all pixels; nearly everything matches",
+            },
+            source="De Bonet 1997, eq. 10",
+            group="Features",
+        ),
+    ] = "variance"
+
+    @property
+    def smallest_side(self) -> int:
+        """Shorter side that the coarsest level may not fall below."""
+        fitted = self.filter_size if self.fit_filters and self.filters != "laplacian" else 1
+        return max(self.coarsest_side, fitted)
+
+
+def check(inputs: Inputs, params: DeBonetParams, size: tuple[int, int]) -> None:
+    """Refuse outputs that are too thin for the pyramid."""
+    from texlab_core.methods.de_bonet.growth import check_size
+
+    check_size(exemplar_of(inputs).size, params.smallest_side, size)
+
+
+def analyze(inputs: Inputs, params: DeBonetParams) -> Generator[Step, None, Analysis]:
+    """Build pyramid and features of the exemplar."""
+    from texlab_core.methods.de_bonet.analysis import analyze_steps
+    from texlab_core.methods.de_bonet.growth import analyze_in_steps
+
+    steps = analyze_steps(
+        exemplar_of(inputs).pixels,
+        smallest=params.smallest_side,
+        border=params.border,
+        normalization=params.normalization,
+        filters=params.filters,
+        orientations=params.orientations,
+        filter_size=params.filter_size,
+        luminance_only=params.channels == "luminance",
+    )
+    return (yield from analyze_in_steps(steps, "features"))
+
+
+def synthesize(
+    model: Analysis, inputs: Inputs, params: DeBonetParams, size: tuple[int, int], streams: Streams
+) -> Generator[Step, None, Output]:
+    """Sample level by level, growing the picture on the way (SynthesizePyramid)."""
+    from texlab_core.methods.de_bonet.growth import grow
+    from texlab_core.methods.de_bonet.report import report_steps
+    from texlab_core.methods.de_bonet.sampling import prepare, sample_steps
+
+    depth = model.depth
+    literal = {"parity": 0, "literal": depth, "mixed": min(depth, params.literal_levels)}
+    sampling = prepare(
+        model,
+        params.thresholds.matrix(params.alpha, params.beta, depth, model.feature_names),
+        size,
+        coarsest=params.coarsest,
+        literal_levels=literal[params.siblings],
+        streams=streams,
+    )
+    image = yield from grow(
+        model,
+        sampling.grid,
+        sampling.sources,
+        sample_steps(sampling),
+        size=size,
+        periodic=params.tileable or model.border == "periodic",
+        after=sampling.grid.count(0),
+    )
+    notes = model.notes
+    if params.tileable and sampling.grid.shape(0) != size:
+        side = 2**depth
+        notes += (f"The output was cropped and does not tile: its sides must be multiples of {side} pixels.",)
+    return (yield from report_steps(sampling, size, image, notes))
+
+
+register(
+    Method(
+        id="de-bonet",
+        title="De Bonet",
+        summary="Samples every frequency band from the exemplar, conditioned on the features of all coarser ones.",
+        reference="J. S. De Bonet, Multiresolution sampling procedure for analysis and synthesis of texture "
+        "images, SIGGRAPH 1997",
+        params=DeBonetParams,
+        analyze=analyze,
+        synthesize=synthesize,
+        fails_on=(
+            "letters and symbols",
+            "objects on large flat areas",
+            "checkerboards and exact symmetry",
+            "gradients of colour or size",
+        ),
+        check=check,
+        # Sets of candidates that are never listed as a whole.
+        rehearsals=(DeBonetParams(alpha=4.0),),
+        order=20,
+    )
+)

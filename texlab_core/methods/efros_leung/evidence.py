@@ -1,0 +1,184 @@
+"""What a finished growth shows: the image, maps of where and how each pixel was found, copying and doubt."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from texlab_core.engine.steps import Curve, Map, Output, Step
+from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from numpy.typing import NDArray
+
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import FloatImage
+    from texlab_core.methods.efros_leung.explain import Grown
+
+_T = TypeVar("_T")
+_PIXELS_AT_ONCE = 2**17
+_BINS = 64
+UNITS = {"ssd": "gray levels²", "flat-ssd": "gray levels²", "sad": "gray levels", "ncc": ""}
+
+
+def report(
+    grown: Grown, exemplar: ImageInput, given: FloatImage | None, levels: NDArray[np.float32], last: Step
+) -> Generator[Step, None, Output]:
+    """Make the output of a finished growth.
+
+    Parameters
+    ----------
+    grown
+        The finished growth.
+    exemplar
+        Where the pixels come from, at full precision.
+    given
+        (H, W, C) float32, pixels that have no source; None when all have one.
+    levels
+        (n,) float32, d_min of the exemplar's own windows with their place left out.
+    last
+        Tells how far the run is, for the steps of this part.
+    """
+    canvas = grown.canvas
+    height, width = canvas.status.shape
+    step = replace(last, stage="measuring")
+    image = np.empty((height, width, exemplar.channels), np.float32)
+    source = np.empty((height, width, 2), np.int32)
+    order = np.empty((height, width), np.float32)
+    tally = _Tally(int(canvas.order.max(initial=0)), exemplar.size)
+    rows = max(1, _PIXELS_AT_ONCE // width)
+    for first in range(0, height, rows):
+        part = slice(first, first + rows)
+        places = canvas.source[part] - 1
+        source[part, :, 0], source[part, :, 1] = places // exemplar.size[1], places % exemplar.size[1]
+        source[part][places < 0] = -1
+        image[part] = exemplar.pixels[source[part, :, 0], source[part, :, 1]]
+        if given is not None:
+            image[part] = np.where(places[..., None] < 0, given[part], image[part])
+        order[part] = canvas.order[part]
+        tally.add(canvas.order[part], canvas.d_min[part], places)
+        yield step
+    # Only what was filled counts as copied: what was given is no work of the method.
+    copied = np.where(order[..., None] > 0, source, np.int32(-1))
+    yield step
+    labels, sizes = yield from _through(copied_regions_steps(copied), step)
+    continuity = yield from _through(continuous_share_steps(copied), step)
+    unit = UNITS[grown.matching.criterion]
+    return Output(
+        image=image,
+        maps={
+            "source": Map(source, "source", "Where each pixel comes from"),
+            "order": Map(order, "scalar", "Order of filling", "pixels"),
+            "matches": Map(canvas.matches, "count", "Size of the match set", "pixels"),
+            "distance": Map(canvas.d_min, "scalar", "Smallest distance d_min", unit),
+            "copied": Map(labels, "label", "Areas copied in one piece"),
+        },
+        curves=_curves(tally, levels, unit),
+        measures=_measures(tally, levels) | _copying(order > 0, continuity, sizes),
+        notes=_notes(grown),
+        details=grown,
+    )
+
+
+def _through(steps: Generator[float, None, _T], step: Step) -> Generator[Step, None, _T]:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            found: _T = end.value
+            return found
+        yield step
+
+
+class _Tally:
+    """Sums over the filled pixels, row by row: d_min along the order of filling, copies, sources used."""
+
+    def __init__(self, last: int, exemplar: tuple[int, int]) -> None:
+        self.last = last
+        self.bins = min(_BINS, last)
+        self.counts = np.zeros(self.bins, np.int64)
+        self.sums = np.zeros(self.bins)
+        self.exact = 0
+        self.used = np.zeros(exemplar[0] * exemplar[1], bool)
+
+    def add(self, order: NDArray[np.int32], distances: NDArray[np.float32], places: NDArray[np.int32]) -> None:
+        filled = order > 0
+        if not filled.any():
+            return
+        bins = (order[filled].astype(np.int64) - 1) * self.bins // self.last
+        self.counts += np.bincount(bins, minlength=self.bins)
+        self.sums += np.bincount(bins, weights=distances[filled], minlength=self.bins)
+        self.exact += int(np.count_nonzero(distances[filled] == 0))
+        self.used[places[filled]] = True
+
+    @property
+    def filled(self) -> int:
+        return int(self.counts.sum())
+
+
+def _curves(tally: _Tally, levels: NDArray[np.float32], unit: str) -> dict[str, Curve]:
+    """Return d_min along the order of filling, and the exemplar's own level beside it."""
+    if not tally.filled:
+        return {}
+    there = tally.counts > 0
+    ends = np.ceil(np.arange(1, tally.bins + 1) * tally.last / tally.bins)
+    means = tally.sums[there] / tally.counts[there]
+    label = "pixels filled"
+    curves = {
+        "distance": Curve.of(means, "Smallest distance while growing", x=ends[there], x_label=label, y_label=unit)
+    }
+    if levels.size:
+        level = np.full(2, levels.mean(dtype=np.float64))
+        curves["leave-one-out"] = Curve.of(
+            level,
+            "The exemplar's own windows",
+            x=[0, tally.last],
+            x_label=label,
+            y_label=unit,
+            reference=True,
+        )
+    return curves
+
+
+def _measures(tally: _Tally, levels: NDArray[np.float32]) -> dict[str, float]:
+    """Return copying (d_min = 0) and doubt (d_min over the exemplar's own level, repetition of sources)."""
+    measures: dict[str, float] = {}
+    if levels.size:
+        measures["leave-one-out"] = float(levels.mean(dtype=np.float64))
+    if not tally.filled:
+        return measures
+    measures["copied-share"] = tally.exact / tally.filled
+    measures["distance"] = float(tally.sums.sum() / tally.filled)
+    measures["source-repetition"] = tally.filled / int(np.count_nonzero(tally.used))
+    level = measures.get("leave-one-out", 0.0)
+    if level > 0:
+        measures["distance-over-level"] = measures["distance"] / level
+    return measures
+
+
+def _copying(filled: NDArray[np.bool_], continuity: float, sizes: NDArray[np.int64]) -> dict[str, float]:
+    """Return how much of what was filled continues its neighbour, and the largest area copied in one piece."""
+    height, width = filled.shape
+    pairs = np.count_nonzero(filled[1:] & filled[:-1]) + np.count_nonzero(filled[:, 1:] & filled[:, :-1])
+    if pairs == 0:
+        return {}
+    all_pairs = (height - 1) * width + height * (width - 1)
+    largest = int(sizes[1]) if sizes.size > 1 else 1
+    return {
+        "continuous-share": continuity * all_pairs / pairs,
+        "largest-copy": largest / np.count_nonzero(filled),
+    }
+
+
+def _notes(grown: Grown) -> tuple[str, ...]:
+    matching = grown.matching
+    notes = []
+    if matching.tiles and matching.causal:
+        notes.append("A causal window sees nothing ahead, so the output was not made to tile.")
+    if matching.error_limit > 0 and matching.causal:
+        notes.append("A causal window is filled row by row, so the growing error limit was not used.")
+    return tuple(notes)

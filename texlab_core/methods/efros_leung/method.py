@@ -1,0 +1,276 @@
+"""Efros and Leung: grow the image pixel by pixel, each copied from where its surroundings occur."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import EXEMPLAR, InputSpec, Method, register
+from texlab_core.engine.steps import Step
+from texlab_core.methods.efros_leung.fill import Anchor
+from texlab_core.methods.efros_leung.windows import Border, Criterion, Matching, Shape
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.run import Streams
+    from texlab_core.engine.steps import FloatImage, Output
+    from texlab_core.engine.steps import Step as AnyStep
+    from texlab_core.kernels.neighbourhood_types import Pool
+
+_AROUND = ("shape", ("square", "disc", "cross"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class EfrosLeungParams(Params):
+    """Parameters of non-parametric sampling."""
+
+    window: Annotated[
+        int,
+        Knob(
+            help="Side of the window that is compared: about as large as the largest regular feature.",
+            low=3,
+            high=41,
+            odd=True,
+            unit="px",
+            stage="analysis",
+            source="Efros & Leung 1999, section 2.1; Forsyth & Ponce, Fig. 11.22",
+            group="Window",
+        ),
+    ] = 15
+    shape: Annotated[
+        Shape,
+        Knob(
+            help="Which pixels around belong to the window.",
+            choices={
+                "square": "all within the side",
+                "disc": "those within the radius",
+                "cross": "the row and the column of the pixel",
+                "causal": "the rows above and what is left of it; filled row by row",
+            },
+            stage="analysis",
+            source="Forsyth & Ponce, assignment c",
+            group="Window",
+        ),
+    ] = "square"
+    criterion: Annotated[
+        Criterion,
+        Knob(
+            help="How two windows are compared.",
+            choices={
+                "ssd": "squared differences, the middle counts most",
+                "flat-ssd": "squared differences, all count the same",
+                "sad": "absolute differences, the middle counts most",
+                "ncc": "1 - correlation: ignores brightness and contrast",
+            },
+            stage="analysis",
+            source="Forsyth & Ponce, assignment c",
+            group="Match set",
+        ),
+    ] = "ssd"
+    eps: Annotated[
+        float,
+        Knob(
+            help="Candidates match up to (1 + eps) times the smallest distance; above 0.3 comes noise.",
+            low=0.0,
+            high=2.0,
+            step=0.01,
+            source="Efros & Leung 1999, section 2.1",
+            group="Match set",
+        ),
+    ] = 0.1
+    tau: Annotated[
+        float,
+        Knob(
+            help="Whatever differs less than this matches too; 0 copies the exemplar verbatim once it can.",
+            low=0.0,
+            high=60.0,
+            linear_to=20.0,
+            step=0.5,
+            unit="gray levels",
+            source="Forsyth & Ponce, 11.3.4 (the threshold)",
+            group="Match set",
+        ),
+    ] = 3.0
+    error_limit: Annotated[
+        float,
+        Knob(
+            help="Fill only pixels whose best match differs less; raised by 1.1 when none is left (0: no limit).",
+            low=0.0,
+            high=100.0,
+            step=1.0,
+            unit="gray levels",
+            source="Efros & Leung 1999, section 2.3",
+            group="Order",
+            when=_AROUND,
+        ),
+    ] = 0.0
+    border: Annotated[
+        Border,
+        Knob(
+            help="What windows of the exemplar see beyond its border.",
+            choices={"inside": "nothing, they lie inside", "periodic": "the exemplar again"},
+            stage="analysis",
+            group="Borders",
+        ),
+    ] = "inside"
+    tiles: Annotated[
+        bool,
+        Knob(
+            help="Make an output that continues itself when it is laid side by side.",
+            group="Borders",
+            when=_AROUND,
+        ),
+    ] = False
+    seed_patch: Annotated[
+        int,
+        Knob(
+            help="Side of the patch of the exemplar from which the image grows.",
+            low=1,
+            high=64,
+            unit="px",
+            source="Forsyth & Ponce, algorithm 11.6",
+            group="Beginning",
+        ),
+    ] = 3
+    anchor: Annotated[
+        Anchor,
+        Knob(
+            help="Where an image that is extended lies in the larger output.",
+            choices={
+                "center": "in the middle",
+                "top-left": "top left",
+                "top": "top",
+                "top-right": "top right",
+                "left": "left",
+                "right": "right",
+                "bottom-left": "bottom left",
+                "bottom": "bottom",
+                "bottom-right": "bottom right",
+            },
+            group="Beginning",
+        ),
+    ] = "center"
+
+    def matching(self) -> Matching:
+        """Return what decides which candidates match."""
+        return Matching(
+            window=self.window,
+            shape=self.shape,
+            criterion=self.criterion,
+            eps=self.eps,
+            tau=self.tau,
+            error_limit=self.error_limit,
+            border=self.border,
+            tiles=self.tiles,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class EfrosLeungModel:
+    """The candidates, and d_min of the exemplar's own windows with their place left out, (n,) float32."""
+
+    pool: Pool
+    levels: NDArray[np.float32]
+
+
+def check(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int]) -> None:
+    """Refuse what cannot work; see :func:`texlab_core.methods.efros_leung.fill.check_inputs`."""
+    from texlab_core.methods.efros_leung.fill import check_inputs
+
+    check_inputs(inputs, params.matching(), size)
+
+
+def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None, EfrosLeungModel]:
+    """Lay the exemplar out for the search, and measure how well it explains itself."""
+    from texlab_core.methods.efros_leung.candidates import make_pool, to_bytes
+    from texlab_core.methods.efros_leung.fill import allowed_centres
+    from texlab_core.methods.efros_leung.level import leave_one_out
+
+    matching = params.matching()
+    values = to_bytes(exemplar_of(inputs).pixels)
+    allowed = allowed_centres(inputs, matching)
+    pool = make_pool(values, allowed, matching)
+    measuring = leave_one_out(values, allowed, pool, matching)
+    while True:
+        try:
+            done, total = next(measuring)
+        except StopIteration as end:
+            return EfrosLeungModel(pool, end.value)
+        yield Step(done, total, "matching the exemplar with itself")
+
+
+def synthesize(
+    model: EfrosLeungModel, inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], streams: Streams
+) -> Generator[AnyStep, None, Output]:
+    """Fill everything that is unknown, and tell where it came from."""
+    from texlab_core.methods.efros_leung.evidence import report
+    from texlab_core.methods.efros_leung.explain import Grown
+    from texlab_core.methods.efros_leung.fill import begin, full_state, make_growth, settings_digest
+
+    matching = params.matching()
+    exemplar = exemplar_of(inputs)
+    laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
+    while True:
+        try:
+            next(laying)
+        except StopIteration as end:
+            beginning = end.value
+            break
+        yield Step(0, size[0] * size[1], "laying out what is known")
+    settings = settings_digest(inputs, matching, size, streams)
+    growth = make_growth(beginning, model.pool, matching, streams, settings)
+
+    def state() -> dict[str, NDArray[np.generic]]:
+        return full_state(growth, exemplar, beginning.given)
+
+    last = growth.step()
+    yield replace(last, state=state)
+    for last in growth.run():
+        yield replace(last, state=state)
+    grown = Grown(growth.canvas, model.pool, matching, growth.choice_key, growth.since, state)
+    return (yield from report(grown, exemplar, beginning.given, model.levels, last))
+
+
+def draft(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], seed: int) -> FloatImage:
+    """Show roughly and at once what the parameters do; see :mod:`texlab_core.methods.efros_leung.draft`."""
+    from texlab_core.methods.efros_leung.draft import draft
+
+    return draft(inputs, params.matching(), size, seed, seed_patch=params.seed_patch, anchor=params.anchor)
+
+
+register(
+    Method(
+        id="efros-leung",
+        title="Efros-Leung",
+        summary="Grows the image pixel by pixel, each copied from a place with the same surroundings.",
+        reference='A. Efros and T. Leung, "Texture synthesis by non-parametric sampling", ICCV 1999; '
+        "Forsyth & Ponce, Computer Vision, section 11.3.4, algorithm 11.6.",
+        params=EfrosLeungParams,
+        analyze=analyze,
+        synthesize=synthesize,
+        check=check,
+        draft=draft,
+        inputs=(
+            EXEMPLAR,
+            InputSpec(
+                "start", "An image to fill or to extend; the exemplar when only a mask is given.", required=False
+            ),
+            InputSpec("mask", "What is not black is to be filled; as large as the start image.", required=False),
+            InputSpec("region", "What is not black may be copied; as large as the exemplar.", required=False),
+            InputSpec("state", "Where a stopped or finished run stood, to go on from.", "arrays", required=False),
+        ),
+        fails_on=(
+            "windows smaller than the texture's elements: they fall apart",
+            "windows much larger than its elements: specks, or the exemplar copied verbatim",
+            "growth that has lost its way: the same few pixels over and over",
+        ),
+        order=30,
+    )
+)

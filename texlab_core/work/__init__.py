@@ -1,0 +1,1 @@
+"""The one protocol for long work in pieces."""
