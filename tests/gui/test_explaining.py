@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, feed, shown
 from PySide6.QtCore import Qt
-from texlab.docks.explain import explainer_for
 
-from texlab.docks.explain import efros_leung, heeger_bergen
+from texlab.docks.explain import efros_leung, explainer_for, heeger_bergen
 from texlab.docks.explain.dock import ExplainDock
 from texlab.state.scene import Mark, Probe, Scene
 from texlab.style.pictures import to_picture
