@@ -111,13 +111,13 @@ def test_a_screenshot_that_finds_no_room_leaves_what_was_there(tmp_path: Path) -
     out.parent.mkdir()
     out.write_bytes(b"before")
     limited = (
-        "import resource, signal, sys\nfrom texlab.cli.main import main\nfrom texlab_core import files\n"
-        "write = files.write_whole\n"
+        "import resource, signal, sys\nfrom texlab.cli.main import main\nfrom texlab_core.files import whole\n"
+        "write = whole.write_whole\n"
         "def limited(path, data):\n"
         "    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, 5_000))\n"
         "    write(path, data)\n"
-        "files.write_whole = limited\nsys.exit(main(sys.argv[1:]))"
+        "whole.write_whole = limited\nsys.exit(main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", limited, "screenshot", "--size", "900x700", "--out"]
     done = subprocess.run(

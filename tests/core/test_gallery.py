@@ -95,8 +95,10 @@ def test_listing_decodes_no_image():
 
 def make_zip(path):
     with zipfile.ZipFile(path, "w") as archive:
-        for name in ("__init__", "errors", "gallery", "resources"):
+        for name in ("__init__", "errors", "version", "images/__init__", "images/gallery"):
             archive.write(CODE / f"{name}.py", f"texlab_core/{name}.py")
+        for name in ("__init__", "resources"):
+            archive.write(CODE / f"files/{name}.py", f"texlab_core/files/{name}.py")
         for file in CODE.parent.joinpath("resources").rglob("*"):
             if file.is_file() and "__pycache__" not in file.parts:
                 archive.write(file, f"texlab_resources/{file.relative_to(CODE.parent / 'resources').as_posix()}")
@@ -119,7 +121,7 @@ def test_installed_and_zipped_resources_are_found_from_another_folder(tmp_path, 
 
 
 def test_missing_resources_are_one_clear_sentence(tmp_path, monkeypatch):
-    monkeypatch.setattr(resources_module, "__file__", str(tmp_path / "texlab_core" / "resources.py"))
+    monkeypatch.setattr(resources_module, "__file__", str(tmp_path / "texlab_core" / "files" / "resources.py"))
     monkeypatch.setattr(resources_module, "PACKAGE", "texlab_resources_nowhere")
     resources.cache_clear()
     try:

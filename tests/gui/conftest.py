@@ -11,7 +11,7 @@ from PIL import Image
 from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
-from texlab import explorer as texlab_explorer  # noqa: F401 (before any test changes what it imports)
+from texlab.app import explorer as texlab_explorer  # noqa: F401 (before any test changes what it imports)
 from texlab.app import start as texlab_app
 from texlab.storage.settings import Settings
 from texlab.style.theme import ThemeSource
