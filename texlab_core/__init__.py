@@ -16,22 +16,28 @@ from texlab_core.version import __version__ as __version__
 if TYPE_CHECKING:
     from texlab_core.api import available_methods, synthesize
     from texlab_core.documents.record import read_recipe, save_result
+    from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput
+    from texlab_core.engine.job import Job
     from texlab_core.engine.params import Knob, Params, describe
     from texlab_core.engine.registry import InputSpec, Method, find_method, register
-    from texlab_core.engine.run import AnalysisCache, Job, Streams
-    from texlab_core.engine.steps import Curve, Map, Output, Result, Step
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Curve, Map, Output, Step
+    from texlab_core.engine.streams import Streams
     from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
     from texlab_core.images.exemplar import as_exemplar
 
 _HOMES = {
     "api": ("available_methods", "synthesize"),
     "documents.record": ("read_recipe", "save_result"),
+    "engine.cache": ("AnalysisCache",),
     "engine.inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput"),
+    "engine.job": ("Job",),
     "engine.params": ("Knob", "Params", "describe"),
     "engine.registry": ("InputSpec", "Method", "find_method", "register"),
-    "engine.run": ("AnalysisCache", "Job", "Streams"),
-    "engine.steps": ("Curve", "Map", "Output", "Result", "Step"),
+    "engine.result": ("Result",),
+    "engine.steps": ("Curve", "Map", "Output", "Step"),
+    "engine.streams": ("Streams",),
     "errors": ("Cancelled", "ImageError", "InputError", "ParamError", "RecipeError"),
     "images.exemplar": ("as_exemplar",),
 }

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method, methods
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
@@ -13,7 +14,8 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.registry import Method
-    from texlab_core.engine.steps import Result, Step
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Step
     from texlab_core.images.exemplar import Source
 
 

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method, methods
-from texlab_core.engine.run import Job, Streams, run
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats import histogram

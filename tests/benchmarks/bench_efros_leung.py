@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.inputs import Crop
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.kernels.jit import njit

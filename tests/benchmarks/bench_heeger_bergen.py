@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.clock import cpu, fourier_pair
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.heeger_bergen.method import HeegerBergenParams
 

@@ -11,8 +11,9 @@ import pytest
 import scipy.fft
 
 from tests.core.spectral_tools import ANY, analyzed, synthesized, texture
+from texlab_core.engine.job import Job
 from texlab_core.engine.progress import finish
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.methods.spectral.codefile import code_input
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from tests.core.test_efros_leung import texture
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import write_image

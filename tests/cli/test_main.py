@@ -14,8 +14,8 @@ import pytest
 
 import texlab.cli.commands
 from texlab.cli import main as cli
-from texlab.cli.commands.methods import knobs
-from texlab.cli.main import Parser, find_commands
+from texlab.cli.commands._knobs import knobs
+from texlab.cli.main import find_commands
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
 from texlab_core.errors import Cancelled, InputError, ParamError
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tests.cli.conftest import Texlab
+    from texlab.cli.parser import Parser
 
 HEAVY = ("PySide6", "shiboken6", "pyqtgraph", "numba", "scipy", "cv2", "PIL", "rich", "tifffile")
 

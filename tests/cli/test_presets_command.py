@@ -7,7 +7,7 @@ import json
 import pytest
 from stub_method import stub  # noqa: F401
 
-from texlab.cli.commands.presets import own_presets
+from texlab.cli.commands._options import own_presets
 from texlab.cli.main import main
 
 METHOD = "stub"

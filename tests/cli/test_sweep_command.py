@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 from stub_method import running, stub  # noqa: F401
 
-from texlab.cli.commands.presets import own_presets
+from texlab.cli.commands._options import own_presets
 from texlab.cli.main import main
 from texlab_core.documents.presets import Preset
 from texlab_core.sheets.sweep_recipes import find_sweep

@@ -18,7 +18,8 @@ from texlab_core.documents.reading import KEY
 from texlab_core.documents.record import read_recipe, save_result
 from texlab_core.engine import registry
 from texlab_core.engine.inputs import ArraysInput, Crop
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.png_text import read_text
 from texlab_core.images.formats.reading import read_image

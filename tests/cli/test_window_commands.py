@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What the window was asked for."""
+    import texlab.app.screenshot
     import texlab.app.start
 
     seen: list[Any] = []
@@ -33,7 +34,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         return 0
 
     monkeypatch.setattr(texlab.app.start, "run_gui", run_gui)
-    monkeypatch.setattr(texlab.app.start, "screenshot", screenshot)
+    monkeypatch.setattr(texlab.app.screenshot, "screenshot", screenshot)
     return seen
 
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import strategies as st
 
+from texlab_core.engine.job import Job
 from texlab_core.engine.params import Params, describe
 from texlab_core.engine.registry import Method, methods
-from texlab_core.engine.run import Job
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:

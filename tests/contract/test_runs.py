@@ -13,13 +13,16 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.contract.cases import IDS, METHODS, assert_image, assert_sentence, job, params_of, texture
-from texlab_core.engine.run import AnalysisCache, Streams, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from texlab_core.engine.registry import Method
-    from texlab_core.engine.steps import Map, Result, Step
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Map, Step
 
 each_method = pytest.mark.parametrize("method", METHODS, ids=IDS)
 # Longest work between two steps at 128 x 128, in CPU seconds; the promise is 50 ms of wall time at 512 x 512.

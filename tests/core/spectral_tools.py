@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.engine.progress import Progress, finish
-from texlab_core.engine.run import Streams
+from texlab_core.engine.streams import Streams
 from texlab_core.methods.spectral.analysis import analyze_plane
 from texlab_core.methods.spectral.fourier import random_phase
 from texlab_core.methods.spectral.marginal import Histogram16

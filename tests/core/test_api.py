@@ -14,8 +14,9 @@ import texlab_core
 from tests.core.toy import NoiseParams, noise_method
 from texlab_core.engine import registry
 from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import EXEMPLAR, InputSpec
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, ImageError, ParamError
 
 if TYPE_CHECKING:

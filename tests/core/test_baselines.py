@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.transforms import laplacian
 
 if TYPE_CHECKING:
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
 
 
 def texture(height: int, width: int, channels: int = 3) -> np.ndarray:

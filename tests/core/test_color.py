@@ -5,14 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from texlab_core.engine.run import Streams
-from texlab_core.transforms.colour import (
-    combine,
-    interleave,
-    principal_axes,
-    principal_axes_task,
-    transport_palette,
-)
+from texlab_core.engine.streams import Streams
+from texlab_core.methods.heeger_bergen.palette import transport_palette
+from texlab_core.transforms.colour import combine, interleave, principal_axes, principal_axes_task
 from texlab_core.work.tasks import finish
 
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.copying import continuous_share, copied_regions
@@ -22,7 +24,7 @@ from texlab_core.methods.de_bonet.method import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 if TYPE_CHECKING:
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
 
 
 def noise(height: int, width: int, channels: int = 3, seed: int = 0) -> np.ndarray:

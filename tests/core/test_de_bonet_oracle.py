@@ -8,7 +8,7 @@ from de_bonet_oracle import candidate_sets, rasters
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from texlab_core.engine.run import Streams
+from texlab_core.engine.streams import Streams
 from texlab_core.kernels.candidates import ranks
 from texlab_core.methods.de_bonet import sampling as sampling_module
 from texlab_core.methods.de_bonet.analysis import analyze_steps

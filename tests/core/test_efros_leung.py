@@ -11,13 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.core.efros_leung_oracle import Oracle
-from texlab_core.engine.run import Job, Streams, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.efros_leung.method import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import integer_weights, offsets
 
 if TYPE_CHECKING:
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
     from texlab_core.methods.efros_leung.fill import Anchor
 
 SHAPES = ("square", "disc", "cross", "causal")

@@ -10,7 +10,8 @@ import pytest
 
 from tests.core.test_efros_leung import image, oracle_for, texture
 from texlab_core.engine.inputs import ArraysInput
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.methods.efros_leung import growth as growth_module
 from texlab_core.methods.efros_leung.draft import draft
@@ -19,7 +20,8 @@ from texlab_core.methods.efros_leung.method import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import LARGEST_SUM, integer_weights, offsets
 
 if TYPE_CHECKING:
-    from texlab_core.engine.steps import Result, Step
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Step
 
 
 def job(

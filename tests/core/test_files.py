@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from texlab_core.documents.record import save_maps, save_result
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.files import whole as files
 from texlab_core.files.whole import write_together, write_whole

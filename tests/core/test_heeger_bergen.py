@@ -7,7 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
-from texlab_core.engine.run import AnalysisCache, Job, Streams, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.method import HeegerBergenParams

@@ -21,8 +21,9 @@ from tests.core.spectral_tools import (
 )
 from texlab_core.api import synthesize
 from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.job import Job
 from texlab_core.engine.progress import finish
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.analysis import channel_marginals, equivalent_bandwidths, residual_zones

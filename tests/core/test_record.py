@@ -21,8 +21,9 @@ from texlab_core.documents.recipe import recipe_json
 from texlab_core.documents.record import read_recipe, save_result, summary
 from texlab_core.engine import registry
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import EXEMPLAR, InputSpec
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.engine.steps import Curve
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.images.exemplar import as_exemplar

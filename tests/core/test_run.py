@@ -14,10 +14,13 @@ from hypothesis import strategies as st
 
 from tests.core.toy import Log, NoiseParams, noise_method
 from texlab_core.engine import registry
+from texlab_core.engine.cache import AnalysisCache, array_bytes
 from texlab_core.engine.inputs import DataInput, ImageInput
+from texlab_core.engine.job import MAX_SEED, Job, check_size
 from texlab_core.engine.params import Params
 from texlab_core.engine.registry import InputSpec
-from texlab_core.engine.run import MAX_SEED, AnalysisCache, Job, Streams, array_bytes, check_size, run
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.version import __version__

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tests.core.spectral_tools import sinusoid, texture, white
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats.peaks import Peak, find_peaks, match_peaks, predicted_snap, shift
 from texlab_core.stats.spectrum import (

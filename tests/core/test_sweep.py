@@ -11,7 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F401
 
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.engine.steps import Map, Output
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.sheets.sweep import Cell, Sweep, Vary, sweep_of

@@ -10,9 +10,9 @@ import pytest
 from stub_method import StubParams, exemplar, stub  # noqa: F401
 
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import Job
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job
 from texlab_core.errors import RecipeError
 from texlab_core.files import strict_json
 from texlab_core.images.exemplar import as_exemplar

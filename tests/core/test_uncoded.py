@@ -7,8 +7,10 @@ import pytest
 import scipy.fft
 
 from tests.core.spectral_tools import ANY, texture
+from texlab_core.engine.job import Job
 from texlab_core.engine.progress import Progress, finish
-from texlab_core.engine.run import Job, Streams, run
+from texlab_core.engine.run import run
+from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.fourier import draw_phase, make_hermitian, mean_square, random_phase
 from texlab_core.methods.spectral.method_uncoded import UncodedParams

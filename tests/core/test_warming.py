@@ -55,7 +55,8 @@ from texlab_core.images.exemplar import as_exemplar
 from texlab_core.engine.params import describe
 from texlab_core.kernels import ranks
 from texlab_core.engine.registry import methods
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
+from texlab_core.engine.job import Job
 from texlab_core.warming import warm_up
 
 def loaded():

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from texlab_core.documents.presets import ExemplarRef
 from texlab_core.documents.record import read_recipe, save_result
 from texlab_core.engine.inputs import ArraysInput, DataInput
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.files.wording import printable, sentence_case
 from texlab_core.images.exemplar import as_exemplar
 

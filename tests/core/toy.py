@@ -15,7 +15,7 @@ from texlab_core.engine.steps import Curve, Output, Step
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from texlab_core.engine.run import Streams
+    from texlab_core.engine.streams import Streams
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,8 @@ from dock_scenes import image_input
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab.style.pictures import to_picture
 from texlab.style.theme import LIGHT
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.methods.de_bonet.method import DeBonetParams
 
 

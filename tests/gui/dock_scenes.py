@@ -13,7 +13,7 @@ from texlab.style.pictures import to_picture
 from texlab.style.theme import LIGHT
 from texlab_core.engine.inputs import ImageInput, hash_arrays
 from texlab_core.engine.params import Knob, Params
-from texlab_core.engine.steps import Result
+from texlab_core.engine.result import Result
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from texlab.runs.column_run import ColumnRun, spectral_distances
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation

@@ -15,8 +15,9 @@ from texlab.docks.spectral.code import EDITED, CodeDock, encoded
 from texlab.docks.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.inputs import DataInput
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.methods.spectral.codefile import code_from_json, code_input, code_to_json, read_code
 from texlab_core.methods.spectral.synthesis import design
 from texlab_core.transforms.gabor_bank import WIDTHS

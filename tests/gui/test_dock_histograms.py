@@ -7,8 +7,8 @@ from PySide6.QtCore import QPoint, Qt
 
 from texlab.docks.bands.comparison import compare, density
 from texlab.docks.bands.histograms import HistogramsDock
+from texlab.style.numbers import log_ticks, number
 from texlab.style.theme import DARK, LIGHT
-from texlab.widgets.plots import log_ticks, number
 from texlab_core.stats.bands import LUMA
 from texlab_core.transforms import steerable
 

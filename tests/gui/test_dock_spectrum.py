@@ -12,7 +12,8 @@ from PySide6.QtWidgets import QApplication
 from texlab.docks.spectral.spectrum import SpectrumDock
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.plane_pane import Arrow, Ring, Spot
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.stats.spectrum import QUANTIZATION
 from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V
 

@@ -20,7 +20,8 @@ from texlab.docks.sweeps.dock import SweepsDock
 from texlab.docks.sweeps.sheet_view import packed
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
-from texlab.runs.sweep_run import SweepPlan, with_cell
+from texlab.runs.sweep_run import SweepPlan
+from texlab.state.changes import with_cell
 from texlab.state.session import Column, Sample, Session, State
 from texlab.style.theme import DARK, LIGHT, ThemeSource
 from texlab_core.engine.registry import find_method

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from texlab.durations import duration, remaining
+from texlab.style.numbers import duration, remaining
 
 
 @pytest.mark.parametrize(

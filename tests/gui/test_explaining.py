@@ -7,12 +7,13 @@ from PySide6.QtCore import Qt
 
 from texlab.docks.explain import efros_leung, explainer_for, heeger_bergen
 from texlab.docks.explain.dock import ExplainDock
-from texlab.state.scene import Mark, Probe, Scene
-from texlab.style.pictures import to_picture
+from texlab.state.scene import Probe, Scene
+from texlab.style.pictures import Mark, to_picture
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.inputs import ImageInput, hash_arrays
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.efros_leung.explain import explain

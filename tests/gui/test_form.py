@@ -20,7 +20,8 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.form import form as form_module
-from texlab.form.form import ChoiceKnob, KnobWidget, NumberKnob, ParameterForm, SwitchKnob, register_editor
+from texlab.form.form import ParameterForm
+from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, register_editor
 from texlab.form.panel import ParametersView
 from texlab.form.scales import Scale
 from texlab_core.engine.params import Knob, Params

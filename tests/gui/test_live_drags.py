@@ -11,11 +11,10 @@ from dock_scenes import column_of, scene_of
 
 from tests.gui.conftest import drag, handle_point, ids, result_image, wait_idle
 from tests.stub_method import StubParams
-from texlab.docks.base import Dock
+from texlab.docks.base import Dock, Question
 from texlab.docks.host import DockHost
 from texlab.runs.slots import Slots
 from texlab.runs.worker import Worker
-from texlab.state.scene import Question
 from texlab_core.engine.run import run
 from texlab_core.methods.de_bonet.method import DeBonetParams
 

@@ -10,7 +10,7 @@ import pytest
 
 from tests.gui.conftest import PATIENCE_MS, hb, ids, wait_idle
 from tests.stub_method import StubParams
-from texlab.columns.column import status_line
+from texlab.columns.status import status_line
 from texlab.runs import controller
 from texlab_core.errors import Cancelled
 from texlab_core.warming import Need, Warmth, every_need

@@ -13,11 +13,13 @@ from PySide6.QtWidgets import QApplication
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.runs.exemplar import prepare
+from texlab.state.changes import restored
 from texlab.state.session import Column, Session, State
-from texlab.window.opener import open_source, restored
+from texlab.storage.reading import open_source
 from texlab_core.documents.record import save_result
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.codefile import load_code_input, write_code
 

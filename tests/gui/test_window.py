@@ -13,8 +13,9 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
 
 from tests.gui.conftest import drag, handle_point, hb, ids, result_image, wait_idle
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:

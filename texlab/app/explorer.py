@@ -20,12 +20,13 @@ from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
 from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
+from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.settings import columns_from_json, seed_and_size
 from texlab.window.exchange import Exchange
 from texlab.window.gallery_thumbnails import Thumbnails
 from texlab.window.handlers import Handlers
 from texlab.window.help_desk import HelpDesk
-from texlab.window.opener import Choice, Opener, is_document, last_exemplar
+from texlab.window.opener import Opener
 from texlab.window.presenter import Presenter
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import methods

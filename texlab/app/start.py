@@ -8,7 +8,7 @@ import signal
 import sys
 from typing import TYPE_CHECKING, cast
 
-from PySide6.QtCore import QBuffer, QCoreApplication, QEventLoop, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from texlab.storage.settings import Settings
@@ -16,13 +16,11 @@ from texlab.style.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window.main_window import MainWindow
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Iterator
 
     from texlab.app.explorer import Explorer
 
 SWITCH_INTERVAL_S = 0.001
-SCREENSHOT_LIMIT_MS = 120_000
 
 
 def application() -> QApplication:
@@ -59,7 +57,7 @@ def run_gui(image: str | None = None) -> int:
     """Open the window and return the exit code when it is closed."""
     app = application()
     settings = Settings()
-    themes = ThemeSource(_choice(settings.text("theme", "auto")))
+    themes = ThemeSource(theme_choice(settings.text("theme", "auto")))
     window = build(settings, themes)
     window.show()
 
@@ -92,72 +90,6 @@ def closed_by_signals(window: MainWindow) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def screenshot(
-    out: str | os.PathLike[str], *, size: tuple[int, int], theme: str = "dark", gallery: str | None = None
-) -> int:
-    """Draw the window with finished columns and save it.
-
-    Parameters
-    ----------
-    out
-        PNG file to write.
-    size
-        Width and height of the window.
-    theme
-        ``light`` or ``dark``.
-    gallery
-        Texture of the gallery; None takes the first one.
-    """
-    from texlab_core.errors import InputError
-    from texlab_core.files.whole import write_whole
-
-    app = application()
-    settings = Settings()
-    settings.values = {}
-    settings.save = lambda: None  # type: ignore[method-assign]  # a picture changes no one's settings
-    themes = ThemeSource(_choice(theme))
-    window = build(settings, themes)
-    window.resize(*size)
-    window.show()
-    explorer = complete(window, settings, themes)
-    explorer.start(f"gallery:{gallery}" if gallery else None)
-    finished = wait_until_idle(explorer)
-    app.processEvents()
-    picture = QBuffer()
-    window.grab().save(picture, "PNG")
-    window.close()
-    window.deleteLater()
-    app.processEvents()
-    if not finished:
-        raise InputError(f"The columns did not finish within {SCREENSHOT_LIMIT_MS // 1000} seconds.")
-    write_whole(out, bytes(picture.data().data()))
-    return 0
-
-
-def wait_until_idle(explorer: Explorer, limit_ms: int = SCREENSHOT_LIMIT_MS) -> bool:
-    """Process events until every column and every visible dock is done; False after the limit."""
-    loop = QEventLoop()
-    done = False
-
-    def look() -> None:
-        nonlocal done
-        if explorer.idle:
-            done = True
-            loop.quit()
-
-    watch, limit = QTimer(), QTimer()
-    watch.setInterval(50)
-    watch.timeout.connect(look)
-    limit.setSingleShot(True)
-    limit.timeout.connect(loop.quit)
-    watch.start()
-    limit.start(limit_ms)
-    loop.exec()
-    watch.stop()
-    limit.stop()
-    QCoreApplication.processEvents()
-    return done
-
-
-def _choice(name: str) -> ThemeName:
+def theme_choice(name: str) -> ThemeName:
+    """Return the theme of this name, or what follows the system."""
     return cast("ThemeName", name) if name in ("auto", "light", "dark") else "auto"

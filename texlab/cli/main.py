@@ -11,15 +11,16 @@ import io
 import os
 import pkgutil
 import sys
-from typing import TYPE_CHECKING, NoReturn, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import texlab.cli.commands
+from texlab.cli.parser import Parser
 from texlab.cli.terminal import INTERRUPTED, append_to_log, complain, orderly_interrupts
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
 DESCRIPTION = "Explore example-based texture synthesis; without a command, the window opens."
 
@@ -35,31 +36,6 @@ class Command(Protocol):
 
     def execute(self, args: argparse.Namespace, /) -> int:
         """Do it; return the exit code."""
-
-
-class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one sentence, and whose help may depend on what was typed.
-
-    Parameters
-    ----------
-    given
-        The whole command line.
-    more_help
-        Makes text to put below the help from ``given``.
-    """
-
-    given: Sequence[str] = ()
-    more_help: Callable[[Sequence[str]], str] | None = None
-
-    def error(self, message: str) -> NoReturn:
-        """Print one sentence and leave with 2."""
-        complain(f"{message.rstrip('.')}; see {self.prog} --help.", self.prog)
-        self.exit(2)
-
-    def format_help(self) -> str:
-        """Return the help, followed by what ``more_help`` adds."""
-        text = super().format_help()
-        return text if self.more_help is None else f"{text}\n{self.more_help(self.given)}"
 
 
 def main(argv: Sequence[str] | None = None) -> int:

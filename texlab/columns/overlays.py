@@ -12,8 +12,9 @@ from texlab.style.colouring import colour_map
 if TYPE_CHECKING:
     from texlab.columns.column import ColumnView
     from texlab.runs.worker import Task
-    from texlab.state.scene import ColumnScene, Picture, Scene
-    from texlab_core.engine.steps import Result
+    from texlab.state.scene import ColumnScene, Scene
+    from texlab.style.pictures import Picture
+    from texlab_core.engine.result import Result
 
 Coloured = tuple[int, int, "Picture"]
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QSplitter, QWidget
 
 from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
-from texlab.state.scene import Mark
+from texlab.style.pictures import Mark
 from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:

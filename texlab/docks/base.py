@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QToolTip, QWidget
 
 if TYPE_CHECKING:
-    from texlab.state.scene import Question, Scene
+    from collections.abc import Callable
+
+    from texlab.state.scene import Scene
     from texlab.style.theme import Theme
 
 
@@ -63,3 +66,20 @@ class Dock(QWidget):
 
     def shut_down(self) -> None:
         """Stop and join what the dock started itself; the window is about to go."""
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What a dock wants to know.
+
+    Parameters
+    ----------
+    key
+        Hashable; while it stays equal nothing is computed again.
+    compute
+        Called in a background thread with a ``should_stop`` function; its value goes to ``Dock.present``. It must
+        not touch any widget.
+    """
+
+    key: tuple[Any, ...]
+    compute: Callable[[Callable[[], bool]], Any]

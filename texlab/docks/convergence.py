@@ -9,12 +9,13 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
 from texlab.style.colouring import SEQUENTIAL_TABLE
+from texlab.style.numbers import number
 from texlab.widgets.heat_map import HeatMap
-from texlab.widgets.plots import SERIES, Plot, number
+from texlab.widgets.plots import SERIES, Plot
 from texlab_core.engine.steps import Curve
 
 if TYPE_CHECKING:

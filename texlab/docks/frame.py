@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -21,6 +20,7 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Dock
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
+from texlab.widgets.readout import Readout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -164,33 +164,6 @@ class FramedDock(Dock):
     def add_readout(self) -> Readout:
         """Add the place where the value under the cursor is told, over the body's lower right corner."""
         return Readout(f"{self.name}-readout", self.body)
-
-
-class Readout(QLabel):
-    """A line of text that lies over a corner of its parent and takes no room in the layout."""
-
-    def __init__(self, name: str, parent: QWidget) -> None:
-        super().__init__(parent)
-        self._over = parent
-        self.setObjectName(name)
-        self.setAccessibleName("Value under the cursor")
-        self.setTextFormat(Qt.TextFormat.PlainText)
-        self.setAutoFillBackground(True)
-        self.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
-        self.setForegroundRole(QPalette.ColorRole.ToolTipText)
-        self.setMargin(3)
-        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.hide()
-
-    def setText(self, text: str) -> None:
-        """Show a text, or nothing."""
-        super().setText(text)
-        self.setVisible(bool(text))
-        if text:
-            self.adjustSize()
-            area = self._over.rect()
-            self.move(max(0, area.right() - self.width() - 6), area.bottom() - self.height() - 6)
-            self.raise_()
 
 
 def replace_items(box: QComboBox, items: list[tuple[str, Any]]) -> None:

@@ -9,9 +9,9 @@ from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
 from texlab.runs.worker import Task, Worker
 
 if TYPE_CHECKING:
-    from texlab.docks.base import Dock
+    from texlab.docks.base import Dock, Question
     from texlab.runs.slots import Slots
-    from texlab.state.scene import Question, Scene
+    from texlab.state.scene import Scene
 
 NOTHING_YET = "There is nothing to show yet."
 

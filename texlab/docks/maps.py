@@ -19,16 +19,19 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
 from texlab.style import colouring
-from texlab.widgets.plots import ColourBar, PicturePane, number, pg
+from texlab.style.numbers import number
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plots import ColourBar, pg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.state.scene import Picture, Scene
+    from texlab.state.scene import Scene
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import Map
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
-from texlab.widgets.plots import PicturePane
+from texlab.widgets.picture_pane import PicturePane
 
 if TYPE_CHECKING:
     from collections.abc import Callable

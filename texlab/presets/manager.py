@@ -16,11 +16,12 @@ from texlab_core.documents.presets import Preset, read_preset
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from PySide6.QtWidgets import QWidget
+
     from texlab.presets.bar import PresetBar
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
     from texlab.state.session import Session
-    from texlab.window.main_window import MainWindow
 
 Listed = tuple[str, list[Preset], set[tuple[str, str]], tuple[str, ...]]
 
@@ -28,7 +29,7 @@ Listed = tuple[str, list[Preset], set[tuple[str, str]], tuple[str, ...]]
 class PresetManager(QObject):
     """Keeps the preset bar of the chosen column up to date and does what it asks."""
 
-    def __init__(self, window: MainWindow, bar: PresetBar, session: Session, controller: Controller) -> None:
+    def __init__(self, window: QWidget, bar: PresetBar, session: Session, controller: Controller) -> None:
         super().__init__(window)
         self._window = window
         self._bar = bar

@@ -6,18 +6,20 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
-from texlab.state.scene import Frame, Picture
-from texlab.style.pictures import to_picture
+from texlab.state.scene import Frame
+from texlab.style.pictures import Picture, to_picture
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab_core.engine.run import AnalysisCache
-    from texlab_core.engine.steps import FloatImage, Result, Step
+    from texlab_core.engine.cache import AnalysisCache
+    from texlab_core.engine.job import Job
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage, Step
     from texlab_core.warming import Need, Warmth
 
 MAX_FRAME_BYTES = 96 * 2**20

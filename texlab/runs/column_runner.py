@@ -10,19 +10,20 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.column_run import ColumnRun, Drafted, DraftRun, Finished, Loading, Progress, Waits, with_exemplar
+from texlab.runs.drafts import draft_size
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.worker import Worker
-from texlab.state.difference import draft_size
 from texlab.state.scene import ColumnScene
 from texlab_core.engine.inputs import ArraysInput
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import AnalysisCache, Job
 from texlab_core.warming import Need, Warmth
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from texlab.state.session import Column, State
+    from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
 
     Keep = Callable[[], Mapping[str, Any]]

@@ -11,19 +11,21 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
-from texlab.runs.exemplar import Preparation, Prepared, rescaled
+from texlab.runs.exemplar import Preparation, Prepared
 from texlab.runs.slots import Slots
 from texlab.runs.worker import Request, Worker
+from texlab.state.changes import rescaled
 from texlab.state.difference import difference
-from texlab.state.scene import ColumnScene, Mark, Probe, Scene
+from texlab.state.scene import ColumnScene, Probe, Scene
+from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import AnalysisCache
 from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.session import Sample, Session, State
+    from texlab.style.pictures import Mark
     from texlab.style.theme import ThemeSource
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params

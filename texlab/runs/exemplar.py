@@ -11,8 +11,8 @@ from texlab.runs.worker import Worker
 from texlab.style.pictures import to_picture
 
 if TYPE_CHECKING:
-    from texlab.state.scene import Picture
     from texlab.state.session import Sample
+    from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput
 
 
@@ -84,20 +84,3 @@ def prepare(sample: Sample, before: Prepared | None) -> Prepared:
     if sample.crop is not None:
         exemplar = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop)
     return Prepared(exemplar, picture, scaled)
-
-
-def rescaled(sample: Sample, scale: float) -> Sample:
-    """Return the sample at another scale with its crop over the same part of the picture."""
-    from texlab_core.engine.inputs import Crop
-    from texlab_core.images.exemplar import scaled_size
-
-    crop = sample.crop
-    if crop is not None:
-        factor = scale / sample.scale
-        height, width = scaled_size(*sample.source.size, scale)
-        rows = min(max(round(crop.height * factor), 2), height)
-        columns = min(max(round(crop.width * factor), 2), width)
-        top = min(round(crop.top * factor), height - rows)
-        left = min(round(crop.left * factor), width - columns)
-        crop = Crop(top, left, rows, columns)
-    return dataclasses.replace(sample, scale=scale, crop=crop)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab.runs.column_run import TaskLike, with_exemplar
 from texlab.style.pictures import to_picture
-from texlab_core.engine.run import Job
+from texlab_core.engine.job import Job
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import Cell, Sweep, Vary
 from texlab_core.sheets.sweep_running import Places, run_sweep
 
 if TYPE_CHECKING:
-    from texlab.state.scene import Picture
     from texlab.state.session import Column, State
+    from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.params import Params
 
@@ -109,28 +108,3 @@ class SweepRun:
         workers = max(1, (os.cpu_count() or 1) - 1)
         run_sweep(self.sweep, show, task.should_stop, on_progress=advance, workers=workers, places=self.places)
         return SweepProgress(tuple(made), 1.0)
-
-
-def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State, int] | None:
-    """Return the state in which a column has a cell's parameters (and its seed, when that is varied).
-
-    Parameters
-    ----------
-    state
-        The present state.
-    cell
-        What was clicked.
-    wanted
-        Ids of columns by preference; the first with the cell's method takes the parameters, then any other.
-
-    Returns
-    -------
-    State and id of the column, or None when no column runs the method.
-    """
-    columns = [column for column in map(state.column, wanted) if column is not None]
-    for column in (*columns, *state.columns):
-        if column.method == cell.job.method:
-            changed = state.with_column(dataclasses.replace(column, params=cell.job.params))
-            seed = cell.job.seed if "seed" in cell.values else state.seed
-            return dataclasses.replace(changed, seed=seed), column.id
-    return None

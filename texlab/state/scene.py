@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
-    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
 
 Status = Literal["idle", "waiting", "running", "finished", "cancelled", "failed"]
-Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,20 +89,6 @@ class Probe:
     pinned: bool = False
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.
-
-    ``chosen`` is the one that was taken, ``candidate`` another that could have been, ``window`` a neighbourhood.
-    """
-
-    top: float
-    left: float
-    height: float
-    width: float
-    role: Literal["chosen", "candidate", "window"] = "candidate"
-
-
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Everything that docks may show."""
@@ -119,20 +103,3 @@ class Scene:
     def selected(self) -> ColumnScene | None:
         """The chosen column."""
         return next((column for column in self.columns if column.id == self.selected_id), None)
-
-
-@dataclass(frozen=True, eq=False)
-class Question:
-    """What a dock wants to know.
-
-    Parameters
-    ----------
-    key
-        Hashable; while it stays equal nothing is computed again.
-    compute
-        Called in a background thread with a ``should_stop`` function; its value goes to ``Dock.present``. It must
-        not touch any widget.
-    """
-
-    key: tuple[Any, ...]
-    compute: Callable[[Callable[[], bool]], Any]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab_core.engine.run import MAX_SEED
+from texlab_core.engine.job import MAX_SEED
 
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
+from texlab_core.engine.job import check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
-from texlab_core.engine.run import check_seed, check_size
 from texlab_core.errors import InputError
 from texlab_core.files.whole import write_whole
 

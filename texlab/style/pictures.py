@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from texlab.state.scene import Picture
     from texlab_core.engine.steps import FloatImage
 
 
@@ -27,3 +28,20 @@ def describe_pixel(image: FloatImage, row: int, column: int) -> str:
     values = image[row, column]
     numbers = " ".join(f"{value:.3f}" for value in values)
     return f"{column}, {row}   {'RGB' if len(values) == 3 else 'gray'} {numbers}"
+
+
+Picture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.
+
+    ``chosen`` is the one that was taken, ``candidate`` another that could have been, ``window`` a neighbourhood.
+    """
+
+    top: float
+    left: float
+    height: float
+    width: float
+    role: Literal["chosen", "candidate", "window"] = "candidate"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QContextMenuEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.state.scene import Mark, Picture
+    from texlab.style.pictures import Mark, Picture
     from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
 

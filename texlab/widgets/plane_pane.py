@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from PySide6.QtCore import QEvent, QPoint
     from PySide6.QtGui import QContextMenuEvent, QResizeEvent
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
 
 configure_pyqtgraph()

@@ -10,9 +10,8 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
+from texlab.style.numbers import log_ticks
 from texlab.style.theme import configure_pyqtgraph
-from texlab.widgets.image_pane import ImagePane
-from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from PySide6.QtCore import QObject
     from PySide6.QtGui import QPaintEvent, QResizeEvent
 
-    from texlab.state.scene import Picture
     from texlab.style.theme import Theme
 
 pg = configure_pyqtgraph()
@@ -338,54 +336,3 @@ class ColourBar(QWidget):
             y = bar.bottom() - self._mark * bar.height()
             painter.fillRect(QRectF(bar.left() - 5, y - 1.5, bar.width() + 10, 3), QColor(self._theme.text))
         painter.end()
-
-
-class PicturePane(ImagePane):
-    """An image pane that fits whatever picture it is given; panes of one ``link`` pan and zoom together."""
-
-    def __init__(self, name: str, label: str, link: ViewLink | None = None) -> None:
-        self._own_link = link or ViewLink()
-        super().__init__(self._own_link)
-        self.setObjectName(name)
-        self.setAccessibleName(label)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-
-    def set_picture(self, picture: Picture | None) -> None:
-        """Show a picture, or nothing."""
-        if picture is not None:
-            self._own_link.set_extent(*picture.shape[:2])
-        super().set_picture(picture)
-
-
-def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
-    """Return (log10 of the value, text) of round values between two logarithms, at least ``apart`` apart."""
-    powers = range(int(np.floor(low)) - 1, int(np.ceil(high)) + 1)
-    ticks: list[float] = []
-    # Powers of ten first; then what still has room between them.
-    for factors in ((1,), (2, 5), (3, 7)):
-        for power in powers:
-            for factor in factors:
-                place = power + float(np.log10(factor))
-                if low <= place <= high and all(abs(place - other) >= apart for other in ticks):
-                    ticks.append(place)
-    if len(ticks) > 1 or high <= low:
-        return [(place, number(float(f"{10**place:.1g}"))) for place in sorted(ticks)]
-    # Too little lies between the limits: even steps of 1, 2 or 5 instead of the round values of a logarithm.
-    bottom, top = 10.0**low, 10.0**high
-    least = max(top - bottom, 1e-300) / max(1, int((high - low) / apart))
-    power = 10.0 ** np.floor(np.log10(least))
-    step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least * (1 - 1e-9))
-    values = [k * step for k in range(int(np.ceil(bottom / step)), int(np.floor(top / step)) + 1)]
-    return [(float(np.log10(value)), number(float(f"{value:.6g}"))) for value in values]
-
-
-def number(value: float) -> str:
-    """Return a number with four digits that matter (whole numbers with all), for tables and read-outs."""
-    value = value + 0.0  # no minus before zero
-    if not np.isfinite(value):
-        return "none"
-    if value == round(value) and abs(value) < 1e7:
-        return f"{value:.0f}"
-    if abs(value) >= 1e5 or abs(value) < 1e-4:
-        return f"{value:.2e}"
-    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.4g}"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
-from texlab.window.main_window import source_of
-from texlab.window.opener import IMAGE_SUFFIXES
+from texlab.storage.reading import IMAGE_SUFFIXES
+from texlab.window.mime import source_of
 
 if TYPE_CHECKING:
     from texlab.runs.controller import Controller

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QLineEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayo
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
 
 THUMBNAIL = 48
 _NAME = Qt.ItemDataRole.UserRole

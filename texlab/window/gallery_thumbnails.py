@@ -13,7 +13,7 @@ from texlab.style.pictures import to_picture
 from texlab_core.images.gallery import gallery
 
 if TYPE_CHECKING:
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.window.gallery import GalleryView
 
 SIDE = 48

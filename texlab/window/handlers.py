@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
+from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
-from texlab_core.engine.run import MAX_SEED
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
 

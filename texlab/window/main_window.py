@@ -27,7 +27,8 @@ from texlab.style.theme import apply_theme, set_text_size
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.message_bar import MessageBar
-from texlab_core.engine.run import MAX_SEED
+from texlab.window.mime import source_of
+from texlab_core.engine.job import MAX_SEED
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
@@ -383,23 +384,6 @@ class MainWindow(QMainWindow):
             event.acceptProposedAction()
             # The answer to the drop must not wait for what follows from it.
             QTimer.singleShot(0, lambda: self.dropped.emit(source))
-
-
-def source_of(mime: Any) -> str | bytes | None:
-    """Return the path of the first local file, or the picture as PNG bytes, or None."""
-    for url in mime.urls():
-        if url.isLocalFile():
-            return str(url.toLocalFile())
-    if mime.hasImage():
-        from PySide6.QtCore import QBuffer, QIODevice
-        from PySide6.QtGui import QImage
-
-        image = QImage(mime.imageData())
-        buffer = QBuffer()
-        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
-        if not image.isNull() and image.save(buffer, "PNG"):  # type: ignore[call-overload]
-            return bytes(buffer.data().data())
-    return None
 
 
 def application_icon() -> QIcon:

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from texlab.presets.manager import PresetManager
     from texlab.runs.controller import Controller
     from texlab.runs.exemplar import Prepared
-    from texlab.state.scene import Mark, Scene
+    from texlab.state.scene import Scene
     from texlab.storage.settings import Settings
+    from texlab.style.pictures import Mark
     from texlab.style.theme import Theme
     from texlab.window.main_window import MainWindow
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from texlab_core.documents.embedding import MAX_DATA_DEPTH
 from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import check_seed, check_size
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import Method, find_method
-from texlab_core.engine.run import check_seed, check_size
 from texlab_core.errors import InputError, NoRecipeError, RecipeError
 from texlab_core.files import strict_json
 from texlab_core.files.wording import sentence_case

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.embedding import embed, unpack_arrays, unpack_pixels
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
-from texlab_core.engine.run import Job, versions
+from texlab_core.engine.job import Job
+from texlab_core.engine.run import versions
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.images.exemplar import as_exemplar, take
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab_core.engine.params import Params
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
     from texlab_core.images.exemplar import Source
 
 VERSION = 1

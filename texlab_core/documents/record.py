@@ -18,7 +18,7 @@ from texlab_core.images.formats.writing import check_format, encode_image, write
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
     from texlab_core.images.formats.writing import Bits
 
 __all__ = ["Recipe", "RecipeInput", "read_recipe", "save_maps", "save_result", "summary"]

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab_core.engine.run import Job
 
 FloatImage = NDArray[np.float32]
 MapKind = Literal["source", "count", "label", "scalar"]
@@ -134,25 +133,3 @@ class Output:
     measures: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     details: Any = None
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Result(Output):
-    """An output together with the job that made it.
-
-    Parameters
-    ----------
-    job
-        Everything that is needed to make the same bits again.
-    model
-        The analysis that was synthesized from.
-    elapsed_s
-        Wall time in seconds, analysis (unless cached) and synthesis.
-    versions
-        Versions of the program and of the libraries that influence the bits.
-    """
-
-    job: Job
-    model: Any
-    elapsed_s: float
-    versions: Mapping[str, str]

@@ -6,8 +6,9 @@ import functools
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job, run
+from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.sheets.contact_sheet import Tile, contact_sheet
 
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.inputs import ImageInput
-    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.sheets.sweep import Cell
 
 PAGE_WIDTH = 712

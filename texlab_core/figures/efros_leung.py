@@ -14,7 +14,8 @@ from texlab_core.sheets.sweep_recipes import find_sweep
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
 
 TEXTURES = ("structured-scales", "letters-scattered", "stochastic-gravel")
 WORKS = ("structured-shingle", "quasiperiodic-knit", "oriented-zebra", "structured-scales")

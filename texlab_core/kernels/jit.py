@@ -34,10 +34,10 @@ def _choose_cache_directory() -> None:
         return
     import platformdirs
 
-    from texlab_core.engine.run import versions
+    from texlab_core.version import __version__
 
     # By version: an index of another version may name types that are gone, and would not load.
-    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / versions()["texlab"]
+    folder = Path(platformdirs.user_cache_dir("texlab", appauthor=False)) / "numba" / __version__
     if _writable(folder):
         os.environ["NUMBA_CACHE_DIR"] = str(folder)
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.engine.streams import Streams
 
 _PIXELS_AT_ONCE = 2**18
 

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from threading import Event, Lock
 from typing import TYPE_CHECKING
 
+from texlab_core.engine.job import MAX_SEED, Job, check_seed
 from texlab_core.engine.registry import find_method, methods
-from texlab_core.engine.run import MAX_SEED, Job, check_seed, run
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
 from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.params import Params
-    from texlab_core.engine.steps import Result, Step
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Step
     from texlab_core.stats.spectrum import Spectrum
 
 # The paper's Fig. 8, and the four papers' own methods.

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from texlab_core.engine.job import MAX_SEED, Job, check_seed
 from texlab_core.engine.params import Field, Knob, describe, frozen_mapping
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import MAX_SEED, Job, check_seed
 from texlab_core.errors import InputError, ParamError
 from texlab_core.files import strict_json
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from texlab_core.engine.params import Params
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
 
 MAX_CELLS = 400
 _POLL_S = 0.01

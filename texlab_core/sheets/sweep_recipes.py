@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
+from texlab_core.engine.job import Job, check_seed, check_size
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.run import Job, check_seed, check_size
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.files import strict_json
 from texlab_core.files.resources import resource

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from texlab_core.engine.run import AnalysisCache, Job, run
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.sheets.sweep import Cell, Sweep
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from texlab_core.engine.job import Job
     from texlab_core.engine.steps import MapKind, Output, Step
 
 _POLL_S = 0.01

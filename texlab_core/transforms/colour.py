@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.stats import histogram
 from texlab_core.work.tasks import finish, row_blocks
 
 if TYPE_CHECKING:
@@ -24,18 +23,6 @@ if TYPE_CHECKING:
 
 SMALLEST_SPREAD = 1e-3
 CONSTANT_SPREAD = 1e-6
-
-
-class RandomStreams(Protocol):
-    """Random numbers by name and index, as ``texlab_core.engine.run.Streams`` gives them."""
-
-    def __call__(self, name: str, *index: int) -> np.random.Generator:
-        """Return a generator at the start of the stream."""
-        ...
-
-    def key(self, name: str, *index: int) -> int:
-        """Return a 64-bit key."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,52 +99,6 @@ def principal_axes_task(pixels: NDArray[Any]) -> Task[ColourAxes]:
     keep = spread >= SMALLEST_SPREAD
     keep[0] = spread[0] >= CONSTANT_SPREAD
     return ColourAxes(mean, np.ascontiguousarray(directions[keep]), spread[keep])
-
-
-def transport_palette(
-    pixels: FloatImage, exemplar: FloatImage, rounds: int, streams: RandomStreams
-) -> Task[FloatImage]:
-    """Move an image's colours onto an exemplar's palette by sliced optimal transport.
-
-    In every round the colours are projected onto three random orthogonal directions, and along each of them
-    matched by rank to the exemplar's. A last round along the channels themselves leaves their histograms exact.
-
-    Parameters
-    ----------
-    pixels
-        (H, W, 3) float32.
-    exemplar
-        (h, w, 3) float32.
-    rounds
-        Number of random rotations.
-    streams
-        Randomness of the directions and of ties, under the name ``palette``.
-
-    Yields
-    ------
-    int
-        Samples worked through since the last time.
-
-    Returns
-    -------
-    ndarray
-        (H, W, 3) float32 within the range of the exemplar.
-    """
-    planes, wanted = np.moveaxis(pixels, -1, 0), np.moveaxis(exemplar, -1, 0)
-    channels = len(planes)
-    for number in range(rounds + 1):
-        turn = np.eye(channels)
-        if number < rounds:
-            turn, _ = np.linalg.qr(streams("palette", number).standard_normal((channels, channels)))
-        moved = []
-        for index, direction in enumerate(turn):
-            target = histogram.sorted_sample((yield from combine(wanted, direction[None])))
-            yield target.size
-            (plane,) = yield from combine(planes, direction[None])
-            yield from histogram.match_ranks_in_place(plane, target, streams.key("palette", number, index))
-            moved.append(plane)
-        planes = np.stack(moved) if number == rounds else (yield from combine(moved, turn.T))
-    return (yield from interleave(planes))
 
 
 def combine(

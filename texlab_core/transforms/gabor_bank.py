@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from texlab_core.methods.spectral.fourier import Floats
+Floats: TypeAlias = NDArray[np.float64]
 
 OCTAVES = 4
 ORIENTATIONS = 4

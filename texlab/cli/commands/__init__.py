@@ -4,7 +4,7 @@ A command is a module with
 
 - ``HELP``: one line for the list of commands,
 - ``ORDER``: its place in that list,
-- ``configure(parser)``: adds its arguments to a :class:`texlab.cli.main.Parser`,
+- ``configure(parser)``: adds its arguments to a :class:`texlab.cli.parser.Parser`,
 - ``execute(args)``: does it and returns the exit code; raises ``InputError`` or ``OSError``
   for what the user can mend.
 

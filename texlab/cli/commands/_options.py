@@ -13,6 +13,7 @@ from texlab_core.errors import InputError, ParamError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from texlab_core.documents.preset_store import PresetStore
     from texlab_core.engine.inputs import Crop
 
 NumberT = TypeVar("NumberT", int, float)
@@ -104,3 +105,11 @@ def _check_writable(folder: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be written to ({error.strerror}).") from error
+
+
+def own_presets() -> PresetStore:
+    """Return the user's presets."""
+    from texlab.storage.paths import config_dir
+    from texlab_core.documents.preset_store import PresetStore
+
+    return PresetStore(config_dir() / "presets")

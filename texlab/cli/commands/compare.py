@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.sheets.comparison import Compared
 
 HELP = "Run several methods on one exemplar and save them side by side."

@@ -12,7 +12,7 @@ from texlab_core.errors import ParamError
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
 
 HELP = "Save a texture as a code of 69 numbers (MSG)."
 ORDER = 17

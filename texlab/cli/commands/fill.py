@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import parse_number, parse_settings, parse_size, refuse_overwriting
-from texlab.cli.commands.synth import BITS, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.commands._outputs import BITS, add_output_options, check_outputs, described, make, summary_of
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import ImageInput, Input
 
 HELP = "Fill the holes of an image, or grow it outward, with the texture around."
@@ -49,7 +49,7 @@ def execute(args: argparse.Namespace) -> int:
         raise InputError("There is nothing to fill: give --mask, --transparent or a larger --size.")
     base = None
     if args.preset is not None:
-        from texlab.cli.commands.presets import own_presets
+        from texlab.cli.commands._options import own_presets
         from texlab_core.documents.preset_store import find_preset
 
         base = find_preset(args.preset, own_presets(), METHOD).params()
@@ -61,7 +61,7 @@ def execute(args: argparse.Namespace) -> int:
     for each in sources:
         refuse_overwriting(outputs.image, each)
 
-    from texlab_core.engine.run import Job
+    from texlab_core.engine.job import Job
 
     inputs, image = _inputs(args)
     job = Job(method=METHOD, inputs=inputs, params=params, size=size or image.size, seed=seed)
@@ -107,7 +107,7 @@ def transparent_part(source: str) -> ImageInput:
 
 def _knobs(_: Sequence[str]) -> str:
     """Return the parameters of the method, for the help."""
-    from texlab.cli.commands.methods import knobs
+    from texlab.cli.commands._knobs import knobs
     from texlab_core.engine.registry import find_method
 
     return knobs(find_method(METHOD)) + "\n"

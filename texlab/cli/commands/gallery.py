@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
 
 HELP = "List the textures that come with the program, by class."
 ORDER = 30

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import TYPE_CHECKING
 
+from texlab.cli.commands._display import has_display, require_qt
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
 
 HELP = "Open the window (what texlab, or texlab IMAGE, alone does)."
 ORDER = 0
@@ -35,17 +34,3 @@ def execute(args: argparse.Namespace) -> int:
     from texlab.app.start import run_gui
 
     return run_gui(args.image)
-
-
-def has_display() -> bool:
-    """Return whether there is somewhere to show a window."""
-    names = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
-    return sys.platform != "linux" or any(os.environ.get(name) for name in names)
-
-
-def require_qt() -> None:
-    """Raise ``InputError`` with one sentence when Qt or a system library that it needs is missing."""
-    try:
-        import PySide6.QtWidgets  # noqa: F401
-    except ImportError as error:
-        raise InputError(f"The window needs Qt, which cannot be loaded ({error}).") from error

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING, Any
+
+from texlab.cli.commands._knobs import _default, _wrap, knobs
 
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.engine.params import Field
     from texlab_core.engine.registry import Method
 
 HELP = "List the synthesis methods, or the parameters of one."
 ORDER = 20
-WIDTH = 100
 
 
 def configure(parser: Parser) -> None:
@@ -50,22 +50,6 @@ def about(method: Method) -> str:
     return "\n".join(parts) + "\n\n" + knobs(method)
 
 
-def knobs(method: Method) -> str:
-    """Return every parameter with default, range and help as text, for ``--set name=value``."""
-    from texlab_core.engine.params import describe
-
-    fields = describe(method.params)
-    if not fields:
-        return f"{method.title} has no parameters."
-    lines = [f"parameters of {method.title}, for --set NAME=VALUE:"]
-    for field in fields:
-        lines.append(f"  {field.name}={_show(field)}")
-        lines.append(_wrap(f"{field.knob.help.rstrip('.')}; {_allowed(field)}.", indent=6))
-        width = max(map(len, field.choices), default=0)
-        lines += [f"      {choice:{width}}  {field.knob.choices.get(choice, '')}" for choice in field.choices]
-    return "\n".join(lines)
-
-
 def as_json(method: Method) -> dict[str, Any]:
     """Return what is known of a method as JSON data."""
     from texlab_core.engine.params import describe
@@ -99,28 +83,3 @@ def _field_json(field: Field) -> dict[str, Any]:
         "help": knob.help,
         "source": knob.source,
     }
-
-
-def _default(field: Field) -> Any:
-    return field.default.to_json() if field.kind == "value" else field.default
-
-
-def _show(field: Field) -> str:
-    """Return the default as ``--set`` would take it."""
-    if field.kind == "bool":
-        return "true" if field.default else "false"
-    if field.kind == "value":
-        import json
-
-        return textwrap.shorten(json.dumps(_default(field), separators=(",", ":")), 60, placeholder="...")
-    return str(field.default)
-
-
-def _allowed(field: Field) -> str:
-    unit = f" {field.knob.unit}" if field.knob.unit else ""
-    return field.allowed + unit
-
-
-def _wrap(text: str, indent: int = 0) -> str:
-    space = " " * indent
-    return textwrap.fill(text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False)

@@ -7,8 +7,10 @@ import contextlib
 import json
 from typing import TYPE_CHECKING, Any
 
+from texlab.cli.commands._options import own_presets
+
 if TYPE_CHECKING:
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.documents.preset_store import PresetStore
     from texlab_core.documents.presets import Preset
 
@@ -59,14 +61,6 @@ def execute(args: argparse.Namespace) -> int:
     answer, text = args.act(args, own_presets())
     print(json.dumps(answer, indent=2, ensure_ascii=False) if args.json else text)
     return 0
-
-
-def own_presets() -> PresetStore:
-    """Return the user's presets."""
-    from texlab.storage.paths import config_dir
-    from texlab_core.documents.preset_store import PresetStore
-
-    return PresetStore(config_dir() / "presets")
 
 
 def _list(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import refuse_overwriting
-from texlab.cli.commands.synth import Outputs, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.commands._outputs import Outputs, add_output_options, check_outputs, described, make, summary_of
 from texlab.cli.terminal import complain
 from texlab_core.errors import InputError, ParamError, RecipeError
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.documents.recipe import Recipe
     from texlab_core.images.formats.decoded import Decoded
     from texlab_core.images.formats.writing import Bits

@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from texlab.cli.commands._display import require_qt
 from texlab.cli.commands._options import output_file, parse_size
-from texlab.cli.commands.gui import require_qt
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
 
 HELP = "Save a picture of the window, drawn off screen after its columns have finished."
 ORDER = 60
@@ -44,6 +44,6 @@ def execute(args: argparse.Namespace) -> int:
     os.environ["QT_QPA_PLATFORM"] = os.environ.get("QT_QPA_PLATFORM") or "offscreen"
     # This platform warns of window hints that it has no use for.
     os.environ.setdefault("QT_LOGGING_RULES", "default.warning=false")
-    from texlab.app.start import screenshot
+    from texlab.app.screenshot import screenshot
 
     return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery)

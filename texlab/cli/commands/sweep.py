@@ -19,7 +19,7 @@ from texlab.cli.terminal import interrupted, logged_quietly
 if TYPE_CHECKING:
     import argparse
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.sheets.sweep import Cell, Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
@@ -85,7 +85,7 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     """Return what is to be done and with which exemplar; what is named on the command line comes first."""
     import dataclasses
 
-    from texlab.cli.commands.presets import own_presets
+    from texlab.cli.commands._options import own_presets
     from texlab_core.documents.preset_store import find_preset
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import InputError

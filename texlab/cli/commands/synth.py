@@ -4,35 +4,26 @@ from __future__ import annotations
 
 import itertools
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import (
-    output_file,
-    output_folder,
     parse_crop,
     parse_number,
     parse_settings,
     parse_size,
     refuse_overwriting,
 )
-from texlab.cli.commands._progress import progress
-from texlab.cli.terminal import interrupted
+from texlab.cli.commands._outputs import BITS, add_output_options, check_outputs, described, make, summary_of
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
-    from pathlib import Path
 
-    from texlab.cli.main import Parser
+    from texlab.cli.parser import Parser
     from texlab_core.engine.params import Params
-    from texlab_core.engine.run import Job
-    from texlab_core.engine.steps import Result
-    from texlab_core.images.formats.writing import Bits
 
 HELP = "Make more of a texture and save it with its recipe."
 ORDER = 10
-BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
 
 
 def configure(parser: Parser) -> None:
@@ -49,14 +40,6 @@ def configure(parser: Parser) -> None:
     parser.more_help = _knobs_of_the_method
 
 
-def add_output_options(parser: Parser) -> None:
-    """Add what ``synth`` and ``redo`` share."""
-    parser.add_argument("--out", required=True, metavar="OUT.png", help="file to write: .png, .tif or .jpg")
-    parser.add_argument("--bits", choices=BITS, help="for each sample: 8 (default), 16, or float in a TIFF")
-    parser.add_argument("--maps", metavar="DIR", help="also save the maps and curves in this folder")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
-
-
 def execute(args: argparse.Namespace) -> int:
     """Check everything, synthesize, save, report."""
     from texlab_core.engine.registry import find_method
@@ -71,7 +54,7 @@ def execute(args: argparse.Namespace) -> int:
     refuse_overwriting(outputs.image, args.image)
 
     from texlab.cli.commands._sources import load_inputs
-    from texlab_core.engine.run import Job
+    from texlab_core.engine.job import Job
 
     job = Job(
         method=args.method,
@@ -89,61 +72,15 @@ def _base(args: argparse.Namespace) -> Params | None:
     """Return the parameters of the preset, if one was named."""
     if args.preset is None:
         return None
-    from texlab.cli.commands.presets import own_presets
+    from texlab.cli.commands._options import own_presets
     from texlab_core.documents.preset_store import find_preset
 
     return find_preset(args.preset, own_presets(), args.method).params()
 
 
-@dataclass(frozen=True)
-class Outputs:
-    """Where to write, and how."""
-
-    image: Path
-    maps: Path | None
-    bits: Bits
-
-
-def check_outputs(args: argparse.Namespace, bits: Bits) -> Outputs:
-    """Return where to write; raises ``InputError`` when that will not be possible."""
-    from texlab_core.images.formats.writing import check_format
-
-    check_format(args.out, bits)
-    image = output_file(args.out)
-    return Outputs(image, None if args.maps is None else output_folder(args.maps), bits)
-
-
-def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
-    """Run a job and save what it makes; the sources to ``keep`` are not overwritten by maps."""
-    from texlab_core.documents.record import save_maps, save_result
-    from texlab_core.engine.run import run
-
-    with progress(job.method) as show:
-        result = run(job, show, interrupted)
-    save_result(result, outputs.image, bits=outputs.bits)
-    if outputs.maps is not None:
-        save_maps(result, outputs.maps, spare=[outputs.image, *keep])
-    return result
-
-
-def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
-    """Return what was made as JSON data."""
-    from texlab_core.documents.record import summary
-
-    return summary(result, outputs.image)
-
-
-def described(result: Result, outputs: Outputs) -> str:
-    """Return what was made in a few lines for people."""
-    height, width = result.job.size
-    exemplar = result.job.inputs.get("exemplar")
-    made = f"{width} x {height} by {result.job.method}, seed {result.job.seed}, in {result.elapsed_s:.2f} s"
-    return "\n  ".join([f"{outputs.image}: {made}.", *getattr(exemplar, "notes", ()), *result.notes])
-
-
 def _knobs_of_the_method(given: Sequence[str]) -> str:
     """Return the parameters of the method that the command line names, for its help."""
-    from texlab.cli.commands.methods import knobs
+    from texlab.cli.commands._knobs import knobs
     from texlab_core.engine.registry import methods
 
     named = [after for before, after in itertools.pairwise(given) if before == "--method"]

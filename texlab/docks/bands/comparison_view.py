@@ -9,7 +9,8 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
 
-from texlab.widgets.plots import Plot, number
+from texlab.style.numbers import number
+from texlab.widgets.plots import Plot
 from texlab.widgets.tables import make_quiet
 
 if TYPE_CHECKING:

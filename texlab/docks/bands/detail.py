@@ -9,7 +9,9 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVB
 
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.pictures import BandLarge, band_table
-from texlab.widgets.plots import ColourBar, PicturePane, number
+from texlab.style.numbers import number
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plots import ColourBar
 from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:

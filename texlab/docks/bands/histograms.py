@@ -11,9 +11,9 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from texlab.docks.bands.comparison import Comparison, compare
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items, shown_image
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
 
 if TYPE_CHECKING:

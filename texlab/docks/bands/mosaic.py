@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
 
 Direction = Literal["left", "right", "up", "down"]
 Layout = Literal["equal", "pyramid"]

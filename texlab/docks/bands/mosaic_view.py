@@ -8,7 +8,8 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QGraphicsRectItem, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from texlab.widgets.plots import PicturePane, pg
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plots import pg
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

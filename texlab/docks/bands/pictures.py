@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from texlab.docks.bands.controls import BandCache, PyramidSettings
     from texlab.docks.recent import Recent
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab_core.engine.steps import FloatImage
     from texlab_core.stats.bands import Band, Channel
     from texlab_core.transforms.steerable import BandKey

@@ -13,10 +13,11 @@ from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, chann
 from texlab.docks.bands.detail import BandDetail
 from texlab.docks.bands.mosaic_view import MosaicView
 from texlab.docks.bands.pictures import PyramidAnswer, PyramidPictures, PyramidRequest
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items, shown_image
 from texlab.docks.recent import Recent, Same
-from texlab.state.scene import Question
-from texlab.widgets.plots import PicturePane, number
+from texlab.style.numbers import number
+from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from texlab.docks.explain.painted_choice import PaintedChoice
-from texlab.widgets.plots import number
+from texlab.style.numbers import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

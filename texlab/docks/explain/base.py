@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.style.theme import Theme
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
 
 
 def never() -> bool:
@@ -26,7 +26,7 @@ def never() -> bool:
 class ExplanationView(QWidget):
     """Shows explanations of one kind.
 
-    ``marks_changed(marks)``: the places of the exemplar to outline, a tuple of :class:`texlab.state.scene.Mark`.
+    ``marks_changed(marks)``: the places of the exemplar to outline, a tuple of ``Mark``.
     """
 
     marks_changed = Signal(object)

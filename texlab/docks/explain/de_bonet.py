@@ -14,8 +14,7 @@ from texlab.docks.explain.structure_view import Structure, StructureView
 from texlab.docks.explain.words import Words
 from texlab.docks.recent import Recent, Same
 from texlab.docks.thresholds.table import KINDS, Axes, make_heads
-from texlab.state.scene import Mark
-from texlab.style.pictures import to_picture
+from texlab.style.pictures import Mark, to_picture
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.methods.de_bonet.explain import explain
 from texlab_core.methods.de_bonet.report import DeBonetDetails
@@ -23,9 +22,9 @@ from texlab_core.methods.de_bonet.report import DeBonetDetails
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
-    from texlab_core.engine.steps import Result
+    from texlab_core.engine.result import Result
     from texlab_core.methods.de_bonet.explain import ExplainedLevel, Explanation, Strictest
     from texlab_core.methods.de_bonet.features import Feature
 

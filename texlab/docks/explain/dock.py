@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QLabel, QStackedLayout
 
+from texlab.docks.base import Question
 from texlab.docks.explain import explainer_for
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.docks.explain.base import Explainer, ExplanationView
-    from texlab.state.scene import ColumnScene, Mark, Probe, Scene
+    from texlab.state.scene import ColumnScene, Probe, Scene
+    from texlab.style.pictures import Mark
     from texlab.style.theme import Theme
 
 INVITATION = "Point at a pixel of a result to see why it is there; click it to keep it."

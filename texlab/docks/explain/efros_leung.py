@@ -10,9 +10,8 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout
 
 from texlab.docks.explain.base import Explainer, ExplanationView, never
 from texlab.docks.explain.patch_grid import Patch, PatchGrid
-from texlab.state.scene import Mark
-from texlab.style.pictures import to_picture
-from texlab.widgets.plots import number
+from texlab.style.numbers import number
+from texlab.style.pictures import Mark, to_picture
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.methods.efros_leung.evidence import UNITS
 from texlab_core.methods.efros_leung.explain import Explanation, Grown, explain
@@ -24,7 +23,8 @@ if TYPE_CHECKING:
 
     from texlab.docks.explain.patch_grid import Frame
     from texlab.style.theme import Theme
-    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.methods.efros_leung.windows import Matching
 
 BEST = 12

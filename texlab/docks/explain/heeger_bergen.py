@@ -13,7 +13,9 @@ from texlab.docks.explain.band_bars import BandBars, Bar
 from texlab.docks.explain.base import Explainer, ExplanationView, never
 from texlab.docks.recent import Recent, Same
 from texlab.style.colouring import diverging
-from texlab.widgets.plots import PicturePane, number, pg
+from texlab.style.numbers import number
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plots import pg
 from texlab_core.errors import Cancelled
 from texlab_core.methods.heeger_bergen.contributions import contributions
 from texlab_core.methods.heeger_bergen.method import Convergence, HeegerBergenParams
@@ -24,9 +26,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
-    from texlab_core.engine.steps import FloatImage, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.methods.heeger_bergen.contributions import Contributions
     from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.transforms.steerable import BandKey

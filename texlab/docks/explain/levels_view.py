@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from PySide6.QtCore import QEvent
     from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
 
 GAP = 8.0

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
 
 Frame = Literal["window", "chosen", "match", "other"]
 GAP = 8

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSpinBox
 
+from texlab.docks.base import Question
 from texlab.docks.fill.mask_canvas import DEFAULT_RADIUS, MaskCanvas
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Same
-from texlab.state.scene import Question
 from texlab.style.pictures import to_picture
 from texlab_core.engine.inputs import ImageInput, hash_arrays
 from texlab_core.engine.registry import methods
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
-    from texlab.state.scene import Picture, Scene
+    from texlab.state.scene import Scene
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
 

@@ -8,13 +8,14 @@ import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QKeySequence, QMouseEvent
 
-from texlab.widgets.plots import PicturePane, pg
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plots import pg
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtWidgets import QWidget
 
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
 
 Tool = Literal["brush", "rubber", "rectangle"]
 MOST_UNDO = 50

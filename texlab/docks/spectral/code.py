@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.code_numbers import (
@@ -36,9 +37,8 @@ from texlab.docks.spectral.code_numbers import (
     with_value,
 )
 from texlab.docks.spectral.code_views import CodeGrid, HistogramBars
-from texlab.state.scene import Question
 from texlab.style.colouring import SEQUENTIAL_TABLE
-from texlab.widgets.plots import number as digits
+from texlab.style.numbers import number as digits
 from texlab_core.engine.inputs import DataInput
 from texlab_core.transforms.gabor_bank import CENTRE_FREQUENCIES, CENTRE_ORIENTATIONS, WIDTHS
 

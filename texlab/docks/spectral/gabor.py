@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QRectF, QSignalBlocker
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.gabor_pictures import RESIDUAL, GaborAnswer, GaborRequest, Pair, gabor_pictures
 from texlab.docks.spectral.spectra import frequency_area
-from texlab.state.scene import Question
 from texlab.style.colouring import gray
+from texlab.style.numbers import number
+from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plane_pane import Drawn, PlanePane, Ring
-from texlab.widgets.plots import ColourBar, PicturePane, number
+from texlab.widgets.plots import ColourBar
 from texlab.widgets.view_link import ViewLink
 from texlab_core.transforms.gabor import circles, filter_bank
 from texlab_core.transforms.gabor_bank import CHANNELS, channel_name

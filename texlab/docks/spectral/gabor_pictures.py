@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab.docks.recent import Recent
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab_core.engine.steps import FloatImage
     from texlab_core.stats.spectrum import Plane
 

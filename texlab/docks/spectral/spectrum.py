@@ -9,13 +9,14 @@ import numpy as np
 from PySide6.QtCore import QEvent, QRectF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.peaks_table import PeaksTable, peak_rows
 from texlab.docks.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
-from texlab.state.scene import Question
+from texlab.style.numbers import number
 from texlab.widgets.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
-from texlab.widgets.plots import SERIES, ColourBar, Plot, number
+from texlab.widgets.plots import SERIES, ColourBar, Plot
 from texlab_core.stats.spectrum import QUANTIZATION
 from texlab_core.transforms.gabor import circles
 from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V

@@ -19,13 +19,14 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.sweeps.panel import SweepPanel
 from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactSheetView
-from texlab.durations import duration, remaining
-from texlab.runs.sweep_run import ShownCell, SweepProgress, SweepRun, with_cell
+from texlab.runs.sweep_run import ShownCell, SweepProgress, SweepRun
 from texlab.runs.worker import Worker
-from texlab.state.scene import Question
+from texlab.state.changes import with_cell
+from texlab.style.numbers import duration, remaining
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     )
 
     from texlab.runs.sweep_run import ShownCell
-    from texlab.state.scene import Picture
+    from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
 
 SMALLEST, USUAL, LARGEST = 48, 112, 384

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPen, QPolyg
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.docks.thresholds.table import SoftLog, cell_text, rounded
-from texlab.form.form import SETTLE_MS
+from texlab.form.knobs import SETTLE_MS
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.methods.de_bonet.distances import feature_distances, passing_share
 

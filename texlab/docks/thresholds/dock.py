@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.docks.thresholds.distance_view import Distances, DistanceView
 from texlab.docks.thresholds.editor import TableEditor
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view, table_field
-from texlab.state.scene import Question
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
 if TYPE_CHECKING:

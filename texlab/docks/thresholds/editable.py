@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import cell_text, changed, mirrored, moved, replaced, reset, rounded
-from texlab.form.form import SETTLE_MS
+from texlab.form.knobs import SETTLE_MS
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPainter

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWi
 
 from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view
-from texlab.form.form import KnobWidget, register_editor
+from texlab.form.knobs import KnobWidget, register_editor
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.engine.run import MAX_PIXELS
+from texlab_core.engine.job import MAX_PIXELS
 from texlab_core.errors import ImageError
 
 if TYPE_CHECKING:

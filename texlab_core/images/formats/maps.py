@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.engine.steps import Curve, Map, Result
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import Curve, Map
 
 INDEX = "index.json"
 

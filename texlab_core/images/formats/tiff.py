@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from texlab_core.engine.run import MAX_PIXELS
+from texlab_core.engine.job import MAX_PIXELS
 from texlab_core.errors import ImageError
 from texlab_core.images.formats.decoded import Decoded, check_pixels, oriented
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import Output, Step
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
 
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import Step
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
     from texlab_core.methods.de_bonet.quadtree import Grid
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.engine.run import Streams
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
 
 Coarsest = Literal["shift", "tile", "iid"]

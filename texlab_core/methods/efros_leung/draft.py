@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.engine.inputs import exemplar_of
-from texlab_core.engine.run import Streams
+from texlab_core.engine.streams import Streams
 from texlab_core.methods.efros_leung.candidates import make_pool, to_bytes
 from texlab_core.methods.efros_leung.fill import allowed_centres, at_once, begin, check_inputs, make_growth
 from texlab_core.methods.efros_leung.windows import offsets

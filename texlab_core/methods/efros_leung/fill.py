@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.engine.streams import Streams
     from texlab_core.kernels.neighbourhood_types import Canvas, Pool
     from texlab_core.methods.efros_leung.windows import Matching
 

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import FloatImage, Output
     from texlab_core.engine.steps import Step as AnyStep
+    from texlab_core.engine.streams import Streams
     from texlab_core.kernels.neighbourhood_types import Pool
 
 _AROUND = ("shape", ("square", "disc", "cross"))

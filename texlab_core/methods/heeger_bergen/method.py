@@ -17,8 +17,9 @@ from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Curve, Output, Step
 from texlab_core.methods.heeger_bergen import analysis
+from texlab_core.methods.heeger_bergen.palette import transport_palette
 from texlab_core.methods.heeger_bergen.rounds import Plan, match, match_round, measure
-from texlab_core.transforms.colour import interleave, transport_palette
+from texlab_core.transforms.colour import interleave
 from texlab_core.work.tasks import Pace, crew, finish, row_blocks
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.heeger_bergen.analysis import TextureModel
     from texlab_core.transforms.steerable import BandKey
     from texlab_core.work.tasks import Crew, Task

@@ -14,7 +14,6 @@ from texlab_core.engine.inputs import DataInput
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.whole import write_whole
-from texlab_core.methods.spectral.choices import BandwidthMeasure, HistogramKind
 from texlab_core.methods.spectral.code import BANDWIDTH_MEASURES, MsgCode, Residual
 from texlab_core.methods.spectral.marginal import HISTOGRAM_KINDS, SAMPLES, Histogram16
 from texlab_core.methods.spectral.tone import Colours, Tone, Vector
@@ -23,6 +22,8 @@ from texlab_core.transforms.gabor_bank import CHANNELS, OCTAVES, ORIENTATIONS
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping, Sequence
+
+    from texlab_core.methods.spectral.choices import BandwidthMeasure, HistogramKind
 
 FORMAT = "texlab-msg"
 VERSION = 1
@@ -138,7 +139,7 @@ def _from_json(given: object) -> CodeFile:
         energies=_channels("energies", data["energies"], 0.0, _MAX_ENERGY),
         bandwidths_u=_channels("bandwidths_u", data["bandwidths_u"], 1e-6, 1.0),
         bandwidths_v=_channels("bandwidths_v", data["bandwidths_v"], 1e-6, 1.0),
-        measure=cast(BandwidthMeasure, measure),
+        measure=cast("BandwidthMeasure", measure),
         residual=Residual(
             *(
                 _number(f"residual.{key}", residual[key], low, high)
@@ -152,7 +153,7 @@ def _from_json(given: object) -> CodeFile:
 
 def _histogram(data: object) -> Histogram16:
     given = _object("histogram", data, ("kind", "values"))
-    kind = cast(HistogramKind, _word("histogram.kind", given["kind"], HISTOGRAM_KINDS))
+    kind = cast("HistogramKind", _word("histogram.kind", given["kind"], HISTOGRAM_KINDS))
     # The odd extension of the low-passed histogram can make samples negative, masses cannot be.
     low = -2.0 if kind == "samples" else 0.0
     values = _numbers("histogram.values", given["values"], SAMPLES, low, 2.0)
@@ -166,7 +167,7 @@ def _colours(data: object) -> Colours | None:
         return None
     given = _object("colours", data, ("mean", "axes", "curves"))
     axes = tuple(
-        cast(Vector, _numbers("colours.axes", axis, 3, -1.001, 1.001))
+        cast("Vector", _numbers("colours.axes", axis, 3, -1.001, 1.001))
         for axis in _list("colours.axes", given["axes"], 3)
     )
     if np.abs(np.array(axes) @ np.array(axes).T - np.eye(3)).max() > 1e-3:
@@ -175,7 +176,7 @@ def _colours(data: object) -> Colours | None:
         _numbers("colours.curves", curve, SAMPLES, -500.0, 500.0)
         for curve in _list("colours.curves", given["curves"], 2)
     )
-    mean = cast(Vector, _numbers("colours.mean", given["mean"], 3, 0.0, 255.0))
+    mean = cast("Vector", _numbers("colours.mean", given["mean"], 3, 0.0, 255.0))
     return Colours(mean, cast("tuple[Vector, Vector, Vector]", axes), (first, second))
 
 

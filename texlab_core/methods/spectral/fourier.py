@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from texlab_core.engine.progress import Progress
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import Step
+    from texlab_core.engine.streams import Streams
 
 Plane: TypeAlias = NDArray[np.float32]
 Half: TypeAlias = NDArray[np.complex64]

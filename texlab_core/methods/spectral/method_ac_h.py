@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import Step
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.spectral.acf import Acf
     from texlab_core.methods.spectral.fourier import Floats
     from texlab_core.methods.spectral.tone import Tone

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.progress import Progress
-    from texlab_core.engine.run import Streams
     from texlab_core.engine.steps import Step
+    from texlab_core.engine.streams import Streams
     from texlab_core.methods.spectral.choices import Equations, PhaseChoice
     from texlab_core.methods.spectral.code import MsgCode, Residual
 

@@ -1,0 +1,85 @@
+"""The real window, drawn off screen and saved as a picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QBuffer, QCoreApplication, QEventLoop, QTimer
+
+from texlab.app.start import application, build, complete, theme_choice
+from texlab.storage.settings import Settings
+from texlab.style.theme import ThemeSource
+
+if TYPE_CHECKING:
+    import os
+
+    from texlab.app.explorer import Explorer
+
+SCREENSHOT_LIMIT_MS = 120_000
+
+
+def screenshot(
+    out: str | os.PathLike[str], *, size: tuple[int, int], theme: str = "dark", gallery: str | None = None
+) -> int:
+    """Draw the window with finished columns and save it.
+
+    Parameters
+    ----------
+    out
+        PNG file to write.
+    size
+        Width and height of the window.
+    theme
+        ``light`` or ``dark``.
+    gallery
+        Texture of the gallery; None takes the first one.
+    """
+    from texlab_core.errors import InputError
+    from texlab_core.files.whole import write_whole
+
+    app = application()
+    settings = Settings()
+    settings.values = {}
+    settings.save = lambda: None  # type: ignore[method-assign]  # a picture changes no one's settings
+    themes = ThemeSource(theme_choice(theme))
+    window = build(settings, themes)
+    window.resize(*size)
+    window.show()
+    explorer = complete(window, settings, themes)
+    explorer.start(f"gallery:{gallery}" if gallery else None)
+    finished = wait_until_idle(explorer)
+    app.processEvents()
+    picture = QBuffer()
+    window.grab().save(picture, "PNG")
+    window.close()
+    window.deleteLater()
+    app.processEvents()
+    if not finished:
+        raise InputError(f"The columns did not finish within {SCREENSHOT_LIMIT_MS // 1000} seconds.")
+    write_whole(out, bytes(picture.data().data()))
+    return 0
+
+
+def wait_until_idle(explorer: Explorer, limit_ms: int = SCREENSHOT_LIMIT_MS) -> bool:
+    """Process events until every column and every visible dock is done; False after the limit."""
+    loop = QEventLoop()
+    done = False
+
+    def look() -> None:
+        nonlocal done
+        if explorer.idle:
+            done = True
+            loop.quit()
+
+    watch, limit = QTimer(), QTimer()
+    watch.setInterval(50)
+    watch.timeout.connect(look)
+    limit.setSingleShot(True)
+    limit.timeout.connect(loop.quit)
+    watch.start()
+    limit.start(limit_ms)
+    loop.exec()
+    watch.stop()
+    limit.stop()
+    QCoreApplication.processEvents()
+    return done

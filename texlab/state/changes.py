@@ -1,0 +1,145 @@
+"""What opening and choosing make of the session: pure functions."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from texlab.state.session import Column, Sample, State
+from texlab_core.engine.inputs import DataInput, ImageInput
+
+if TYPE_CHECKING:
+    from texlab_core.engine.job import Job
+    from texlab_core.sheets.sweep import Cell
+
+COMFORTABLE_SIDE = 256
+SMALLEST_SIDE = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """What a file turned out to be: an image, or a saved result with the job that made it."""
+
+    image: ImageInput
+    path: str | None
+    job: Job | None = None
+
+
+def sample_of(image: ImageInput, path: str | None) -> Sample:
+    """Return the sample for an image: a photograph is scaled to a comfortable size at first."""
+    sample = sample_as_used(image, path)
+    side = max(image.size)
+    if sample.source is not image or side <= COMFORTABLE_SIDE:
+        return sample
+    return dataclasses.replace(sample, scale=round(COMFORTABLE_SIDE / side, 3))
+
+
+def sample_as_used(image: ImageInput, path: str | None = None) -> Sample:
+    """Return the sample whose exemplar is this image, pixel by pixel."""
+    if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):
+        whole = ImageInput(image.origin.pixels, image.name, image.sha256 + ":source", None, image.notes)
+        return Sample(whole, image.origin.scale, image.origin.crop, path)
+    return Sample(image, 1.0, None, path)
+
+
+def fitting(sample: Sample) -> Sample:
+    """Return the sample, without its crop and scale where the file has become too small for them."""
+    from texlab_core.images.exemplar import scaled_size
+
+    height, width = scaled_size(*sample.source.size, sample.scale)
+    if min(height, width) < SMALLEST_SIDE:
+        return dataclasses.replace(sample, scale=1.0, crop=None)
+    crop = sample.crop
+    if crop is None or (
+        min(crop.top, crop.left) >= 0
+        and min(crop.height, crop.width) >= SMALLEST_SIDE
+        and crop.top + crop.height <= height
+        and crop.left + crop.width <= width
+    ):
+        return sample
+    return dataclasses.replace(sample, crop=None)
+
+
+def with_crop_of(sample: Sample, before: Sample | None) -> Sample:
+    """Keep the crop from one texture of the gallery to the next, so that they can be compared."""
+    if before is None or before.crop is None or before.scale != sample.scale:
+        return sample
+    crop, (height, width) = before.crop, sample.source.size
+    both = all(each.source.name.startswith("gallery:") for each in (before, sample))
+    fits = crop.top + crop.height <= height and crop.left + crop.width <= width
+    return dataclasses.replace(sample, crop=crop) if both and fits else sample
+
+
+def restored(state: State, opened: Opened) -> tuple[State, int]:
+    """Return the state in which a saved result's job runs, and the id of its column.
+
+    The first column with the same method takes the parameters; without one, a column is added.
+    """
+    job = opened.job
+    assert job is not None
+    extra = tuple((name, value) for name, value in job.inputs.items() if name != "exemplar")
+    state = dataclasses.replace(state, sample=sample_as_used(opened.image), seed=job.seed, size=job.size)
+    for column in state.columns:
+        if column.method == job.method:
+            changed = dataclasses.replace(column, params=job.params, inputs=extra, size=None)
+            return state.with_column(changed), column.id
+    added = Column(state.next_id, job.method, job.params, extra)
+    return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
+
+
+def with_code(state: State, code: DataInput, chosen: int) -> tuple[State, int]:
+    """Return the state in which MSG works from a code, and the id of its column.
+
+    The chosen column takes it, or the first one of MSG; without one, a column is added.
+    """
+    from texlab_core.engine.registry import find_method
+
+    inputs = (("code", code),)
+    for column in sorted(state.columns, key=lambda column: column.id != chosen):
+        if column.method == "msg":
+            return state.with_column(dataclasses.replace(column, inputs=inputs)), column.id
+    added = Column(state.next_id, "msg", find_method("msg").params(), inputs)
+    return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
+
+
+def rescaled(sample: Sample, scale: float) -> Sample:
+    """Return the sample at another scale with its crop over the same part of the picture."""
+    from texlab_core.engine.inputs import Crop
+    from texlab_core.images.exemplar import scaled_size
+
+    crop = sample.crop
+    if crop is not None:
+        factor = scale / sample.scale
+        height, width = scaled_size(*sample.source.size, scale)
+        rows = min(max(round(crop.height * factor), 2), height)
+        columns = min(max(round(crop.width * factor), 2), width)
+        top = min(round(crop.top * factor), height - rows)
+        left = min(round(crop.left * factor), width - columns)
+        crop = Crop(top, left, rows, columns)
+    return dataclasses.replace(sample, scale=scale, crop=crop)
+
+
+def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State, int] | None:
+    """Return the state in which a column has a cell's parameters (and its seed, when that is varied).
+
+    Parameters
+    ----------
+    state
+        The present state.
+    cell
+        What was clicked.
+    wanted
+        Ids of columns by preference; the first with the cell's method takes the parameters, then any other.
+
+    Returns
+    -------
+    State and id of the column, or None when no column runs the method.
+    """
+    columns = [column for column in map(state.column, wanted) if column is not None]
+    for column in (*columns, *state.columns):
+        if column.method == cell.job.method:
+            changed = state.with_column(dataclasses.replace(column, params=cell.job.params))
+            seed = cell.job.seed if "seed" in cell.values else state.seed
+            return dataclasses.replace(changed, seed=seed), column.id
+    return None

@@ -1,0 +1,103 @@
+"""Reading what the user opens: images, recipes, presets, codes, sessions."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from texlab.state.changes import Opened
+from texlab.storage.kept_exemplar import Kept, kept_path, load
+from texlab_core.engine.inputs import Crop, DataInput, ImageInput
+
+DOCUMENT_SUFFIX = ".json"
+IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An exemplar to open: where it is, and how much of it; without a scale it is taken as a fresh image is."""
+
+    source: str | bytes | Kept
+    crop: Crop | None = None
+    scale: float | None = None
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a JSON file turned out to be: a code, or else a preset."""
+
+    path: str
+    code: DataInput | None = None
+
+
+def is_document(source: str | bytes) -> bool:
+    """Return whether a source is a file that goes into a column instead of being the exemplar."""
+    return isinstance(source, str) and source.lower().endswith(DOCUMENT_SUFFIX)
+
+
+def open_document(path: str) -> Document:
+    """Read a code or recognize a preset by its ``format``; runs in a thread.
+
+    Raises
+    ------
+    InputError
+        One sentence when it is neither, or not what it says it is.
+    """
+    from texlab_core.documents import presets
+    from texlab_core.errors import InputError
+    from texlab_core.files import strict_json
+    from texlab_core.methods.spectral import codefile
+
+    file = Path(path)
+    data = strict_json.load(file, what=f"the file {file.name}")
+    kind = data.get("format") if isinstance(data, dict) else None
+    if kind == codefile.FORMAT:
+        code = codefile.code_from_json(data, what=f"the code {file.name}").code
+        return Document(path, codefile.code_input(code, file.name))
+    if kind != presets.FORMAT:
+        raise InputError(f"{file.name} is neither a code of MSG nor a preset.")
+    return Document(path)
+
+
+def open_source(source: str | bytes | Kept) -> Opened:
+    """Read an image or a saved result (a path, gallery:NAME, the bytes of a file, or what was kept); in a thread.
+
+    Raises
+    ------
+    InputError
+        One sentence when it is neither.
+    """
+    from texlab_core.documents.reading import read_recipe
+    from texlab_core.errors import NoRecipeError
+    from texlab_core.images.exemplar import as_exemplar
+
+    if isinstance(source, Kept):
+        return Opened(load(source), None)
+    path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
+    if path is not None or isinstance(source, bytes):
+        with contextlib.suppress(NoRecipeError):
+            job = read_recipe(source).job()
+            image = job.inputs.get("exemplar")
+            if isinstance(image, ImageInput):
+                return Opened(image, None, job)
+    return Opened(as_exemplar(source), path)
+
+
+def last_exemplar(saved: Any) -> list[Choice]:
+    """Return where the exemplar of a saved session may be (nowhere when that is missing or damaged)."""
+    from texlab_core.images.gallery import gallery
+
+    sample = saved.get("sample") if isinstance(saved, dict) else None
+    if not isinstance(sample, dict):
+        return []
+    name, path, crop, scale = (sample.get(key) for key in ("name", "path", "crop", "scale"))
+    whole = isinstance(crop, list) and len(crop) == 4 and all(type(side) is int for side in crop)
+    box = Crop(*crop) if isinstance(crop, list) and whole else None
+    factor = float(scale) if isinstance(scale, int | float) and 0 < scale <= 1 else None
+    if isinstance(path, str):
+        return [Choice(path, box, factor)]
+    if name in [entry.uri for entry in gallery()]:
+        return [Choice(str(name), box, factor)]
+    return [Choice(Kept(kept_path(), str(name)), box, factor)] if kept_path().is_file() else []

@@ -1,0 +1,108 @@
+"""Everything that is needed to make a result, checked before work starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, Input
+from texlab_core.engine.params import Params, frozen_mapping
+from texlab_core.engine.registry import Method, find_method
+from texlab_core.errors import InputError, ParamError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+MAX_PIXELS = 64 * 2**20
+MAX_SEED = 2**31 - 1
+_KINDS = {"image": ImageInput, "data": DataInput, "arrays": ArraysInput}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Job:
+    """Everything that is needed to make a result, bit for bit.
+
+    Parameters
+    ----------
+    method
+        Id of a registered method.
+    inputs
+        The named inputs; ``exemplar`` for most methods.
+    params
+        The method's parameters; None takes the defaults.
+    size
+        Height and width of the output; None takes the exemplar's.
+    seed
+        0 .. 2147483647.
+
+    Raises
+    ------
+    InputError
+        When the method is unknown, an input is missing, or a value is out of range.
+    """
+
+    method: str
+    inputs: Mapping[str, Input]
+    params: Params = None  # type: ignore[assignment]  # None is replaced in __post_init__
+    size: tuple[int, int] = None  # type: ignore[assignment]
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        method = find_method(self.method)
+        params: Params | None = self.params
+        if params is None:
+            params = method.params()
+        if type(params) is not method.params:
+            raise InputError(f"{method.title} takes {method.params.__name__}, got {type(params).__name__}.")
+        object.__setattr__(self, "params", params)
+        object.__setattr__(self, "inputs", frozen_mapping(self.inputs))
+        _check_inputs(method, self.inputs)
+        object.__setattr__(self, "size", check_size(self._default_size() if self.size is None else self.size))
+        object.__setattr__(self, "seed", check_seed(self.seed))
+        if method.check is not None:
+            method.check(self.inputs, self.params, self.size)
+
+    def _default_size(self) -> tuple[int, int]:
+        exemplar = self.inputs.get("exemplar")
+        return exemplar.size if isinstance(exemplar, ImageInput) else (256, 256)
+
+    @property
+    def analysis_key(self) -> tuple[object, ...]:
+        """What the analysis depends on."""
+        hashes = tuple((name, self.inputs[name].sha256) for name in sorted(self.inputs))
+        return (self.method, hashes, self.params.analysis_key())
+
+
+def check_seed(seed: object) -> int:
+    """Return the seed; raises ``ParamError`` unless it is a whole number in 0 .. 2147483647."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed <= MAX_SEED:
+        raise ParamError("seed", f"a whole number from 0 to {MAX_SEED}", seed)
+    return int(seed)
+
+
+def check_size(size: object) -> tuple[int, int]:
+    """Return (height, width); raises ``ParamError`` unless both are at least 1 and it is at most 64 megapixels."""
+    allowed = "height and width of at least 1 pixel and at most 64 megapixels together"
+    if not isinstance(size, tuple | list) or len(size) != 2:
+        raise ParamError("size", allowed, size)
+    height, width = size
+    for side in (height, width):
+        if isinstance(side, bool) or not isinstance(side, int | np.integer) or side < 1:
+            raise ParamError("size", allowed, size)
+    if int(height) * int(width) > MAX_PIXELS:
+        raise ParamError("size", allowed, size)
+    return int(height), int(width)
+
+
+def _check_inputs(method: Method, inputs: Mapping[str, Input]) -> None:
+    specs = {spec.name: spec for spec in method.inputs}
+    for name, given in inputs.items():
+        if name not in specs:
+            raise ParamError("input", f"one of {', '.join(specs)} for {method.title}", name)
+        if not isinstance(given, _KINDS[specs[name].kind]):
+            raise InputError(f"{name}: must be an input of kind {specs[name].kind}, got {type(given).__name__}.")
+    for spec in method.inputs:
+        if spec.required and spec.name not in inputs:
+            raise InputError(f"{method.title} needs the input {spec.name}, and none was given.")
