@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QSlider,
 )
 
-from texlab.form import form as form_module
+from texlab.form import knobs
 from texlab.form.form import ParameterForm
 from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, register_editor
 from texlab.form.panel import ParametersView
@@ -456,7 +456,7 @@ class PairKnob(KnobWidget):
 
 
 def test_an_editor_is_chosen_by_the_type(qtbot, monkeypatch):
-    monkeypatch.setattr(form_module, "_EDITORS", {})
+    monkeypatch.setattr(knobs, "_EDITORS", {})
     without = ParameterForm(PairParams)
     qtbot.addWidget(without)
     assert list(without.knobs) == ["size"]
