@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from texlab.form.knobs import _EDITORS, ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob
+from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, editor_of
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
 
@@ -125,19 +125,20 @@ class ParameterForm(QWidget):
         for knob in self.knobs.values():
             knob.set_context(context)
 
-    def _make_knob(self, field: Field) -> KnobWidget:
+    def _make_knob(self, field: Field) -> KnobWidget | None:
         if field.kind in ("int", "float"):
             return NumberKnob(field, self)
         if field.kind == "choice":
             return ChoiceKnob(field, self)
         if field.kind == "bool":
             return SwitchKnob(field, self)
-        return _EDITORS[field.type](field, self)
+        editor = editor_of(field.type)
+        return editor(field, self) if editor is not None else None
 
     def _add(self, field: Field) -> None:
-        if field.kind == "value" and field.type not in _EDITORS:
-            return
         knob = self._make_knob(field)
+        if knob is None:
+            return
         knob.setObjectName(f"knob-{field.name}")
         knob.setToolTip(tooltip(field))
         for child in knob.findChildren(QWidget):

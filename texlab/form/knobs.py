@@ -33,6 +33,11 @@ def register_editor(value_type: type, editor: Editor) -> None:
     _EDITORS[value_type] = editor
 
 
+def editor_of(value_type: type) -> Editor | None:
+    """Return the special editor of parameters of this type, or None."""
+    return _EDITORS.get(value_type)
+
+
 class KnobWidget(QWidget):
     """Edits one value.
 
