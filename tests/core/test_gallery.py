@@ -120,6 +120,23 @@ def test_installed_and_zipped_resources_are_found_from_another_folder(tmp_path, 
     subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)
 
 
+def test_in_a_checkout_its_own_folder_counts_even_where_a_copy_is_installed(tmp_path, monkeypatch):
+    monkeypatch.setattr(resources_module, "__file__", str(tmp_path / "texlab_core" / "files" / "resources.py"))
+    # Any package will do as the installed copy.
+    monkeypatch.setattr(resources_module, "PACKAGE", "texlab_core")
+    try:
+        resources.cache_clear()
+        assert resources() == Path(texlab_core.__file__).parent
+        (tmp_path / "resources" / "gallery").mkdir(parents=True)
+        resources.cache_clear()
+        assert resources() == Path(texlab_core.__file__).parent, "somebody else's folder"
+        (tmp_path / "resources" / "gallery" / "SOURCES.tsv").write_text("", "utf-8")
+        resources.cache_clear()
+        assert resources() == tmp_path / "resources"
+    finally:
+        resources.cache_clear()
+
+
 def test_missing_resources_are_one_clear_sentence(tmp_path, monkeypatch):
     monkeypatch.setattr(resources_module, "__file__", str(tmp_path / "texlab_core" / "files" / "resources.py"))
     monkeypatch.setattr(resources_module, "PACKAGE", "texlab_resources_nowhere")

@@ -17,24 +17,25 @@ PACKAGE = "texlab_resources"
 def resources() -> Traversable:
     """Return the folder of resources; it may lie inside a zip archive, so read it, never open it by its path.
 
-    Installed, it is the package ``texlab_resources``; in a checkout, the folder ``resources`` beside the code.
+    In a checkout it is the folder ``resources`` beside the code, so that an edit is seen at once, even where a
+    copy is installed; installed, it is the package ``texlab_resources``.
 
     Raises
     ------
     FileNotFoundError
         When neither is there.
     """
+    folder = Path(__file__).resolve().parents[2] / "resources"
+    # Beside an installed package, a folder of this name would be somebody else's.
+    if (folder / "gallery" / "SOURCES.tsv").is_file():
+        return folder
     try:
         return importlib.resources.files(PACKAGE)
     except ModuleNotFoundError:
-        pass
-    folder = Path(__file__).resolve().parents[2] / "resources"
-    if not folder.is_dir():
         raise FileNotFoundError(
             f"The program's resources are missing: neither the package {PACKAGE} nor the folder {folder} exists; "
             "please install TexLab again."
-        )
-    return folder
+        ) from None
 
 
 def resource(path: str) -> Traversable:

@@ -1,0 +1,65 @@
+"""What the tests of batches share; importable by the processes that they start."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from texlab_core.batch.plan import Plan, plan_from_json
+from texlab_core.images.formats.writing import write_image
+
+if TYPE_CHECKING:
+    from texlab_core.engine.result import Result
+
+# What differs from run to run, and what belongs to no job.
+NOT_COMPARED = {"times.csv", ".texlab-batch.lock"}
+
+
+def photos(folder: Path, count: int = 3) -> None:
+    """Write small images of smooth noise, other ones for each number."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for number in range(count):
+        rng = np.random.Generator(np.random.PCG64(number))
+        noise = rng.random((26, 30, 3))
+        smooth = (noise + np.roll(noise, 1, 0) + np.roll(noise, 1, 1)) / 3
+        write_image(folder / f"photo-{number}.png", smooth)
+
+
+def small_plan(folder: Path, **changes: Any) -> Plan:
+    """Return a plan over three images that takes a moment."""
+    photos(folder / "in")
+    data = {"inputs": ["in/*.png"], "methods": ["tiling", "heeger-bergen"], "seeds": [1, 2], "sizes": ["20x12"]}
+    return plan_from_json(data | changes, folder=folder)
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    """Return what a batch made, by path."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name not in NOT_COMPARED
+    }
+
+
+def shape_of(result: Result) -> tuple[tuple[int, ...], int]:
+    """Return the shape of a result and the process that made it."""
+    return result.image.shape, os.getpid()
+
+
+def die_at_first(result: Result, *, marker: str) -> str:
+    """End the process without a word, but only once."""
+    if not Path(marker).exists():
+        Path(marker).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "made"
+
+
+def die_when_large(result: Result) -> str:
+    """End the process without a word for every result that is larger than 20 rows."""
+    if result.image.shape[0] > 20:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "made"

@@ -1,0 +1,165 @@
+"""A page with every result of a batch: one file of HTML with its style and script inside, pictures beside it."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from texlab_core.batch.rows import Row
+
+_STYLE = """
+:root { color-scheme: light dark; --line: #8884; --dim: #8888; --bad: #c33; }
+body { font: 15px/1.45 system-ui, sans-serif; margin: 1.5rem; }
+h1 { font-size: 1.4rem; margin: 0 0 .3rem; }
+p { margin: .2rem 0 .8rem; max-width: 60rem; white-space: pre-line; }
+form { position: sticky; top: 0; background: Canvas; padding: .5rem 0; display: flex; gap: .8rem; flex-wrap: wrap;
+  align-items: center; border-bottom: 1px solid var(--line); z-index: 1; }
+input[type=search] { min-width: 16rem; }
+table { border-collapse: collapse; margin-top: .6rem; }
+th, td { text-align: left; vertical-align: top; padding: .35rem .7rem .35rem 0;
+  border-bottom: 1px solid var(--line); }
+td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+th button { font: inherit; font-weight: 600; background: none; border: 0; padding: 0; cursor: pointer;
+  color: inherit; }
+th[aria-sort=ascending] button::after { content: " \\2191"; }
+th[aria-sort=descending] button::after { content: " \\2193"; }
+img { display: block; max-width: 128px; image-rendering: pixelated; }
+small { color: GrayText; display: block; }
+.error { color: var(--bad); max-width: 30rem; }
+ul { margin: 0; padding-left: 1.1rem; max-width: 30rem; }
+[hidden] { display: none; }
+"""
+
+_SCRIPT = """
+"use strict";
+const form = document.querySelector("form"), body = document.querySelector("tbody");
+const rows = Array.from(body.rows), shown = document.getElementById("shown");
+function filter() {
+  const words = form.words.value.toLowerCase().split(/\\s+/).filter(Boolean);
+  let count = 0;
+  for (const row of rows) {
+    const text = row.dataset.text;
+    const fits = words.every(word => text.includes(word))
+      && (!form.variant.value || row.dataset.variant === form.variant.value)
+      && (!form.state.value || row.dataset.state.split(" ").includes(form.state.value));
+    row.hidden = !fits;
+    count += fits;
+  }
+  shown.textContent = count === rows.length ? "" : count + " shown";
+}
+function sort(header, column) {
+  const down = header.getAttribute("aria-sort") === "ascending";
+  for (const each of header.parentNode.cells) each.removeAttribute("aria-sort");
+  header.setAttribute("aria-sort", down ? "descending" : "ascending");
+  const numeric = header.classList.contains("number");
+  const value = row => row.cells[column].dataset.value ?? row.cells[column].textContent;
+  const order = new Map(rows.map((row, place) => [row, place]));
+  const sorted = rows.slice().sort((a, b) => {
+    const x = value(a), y = value(b);
+    if ((x === "") !== (y === "")) return x === "" ? 1 : -1;
+    const way = numeric ? x - y : x.localeCompare(y, undefined, {numeric: true});
+    return (down ? -way : way) || order.get(a) - order.get(b);
+  });
+  body.append(...sorted);
+}
+form.addEventListener("input", filter);
+form.addEventListener("submit", event => event.preventDefault());
+document.querySelectorAll("th").forEach((header, column) => {
+  const button = header.querySelector("button");
+  if (button) button.addEventListener("click", () => sort(header, column));
+});
+form.hidden = false;
+filter();
+"""
+
+
+def page_of(name: str, note: str, rows: Sequence[Row], measures: Sequence[str], total: int) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    name, note
+        Of the plan.
+    rows
+        The jobs that are over.
+    measures
+        Names of the columns with numbers.
+    total
+        How many jobs there will be.
+    """
+    failed = sum(bool(row.error) for row in rows)
+    counts = [f"{len(rows) - failed} of {total} textures"] + ([f"{failed} failed"] if failed else [])
+    variants = list(dict.fromkeys(row.about["variant"] for row in rows))
+    options = "".join(f"<option>{escape(each)}</option>" for each in variants)
+    headers = ["<th>Exemplar</th>", "<th>Result</th>"]
+    headers += [f"<th><button>{each}</button></th>" for each in ("Input", "Method", "Size")]
+    headers += [f'<th class="number"><button>{escape(each)}</button></th>' for each in ("Seed", *measures)]
+    headers.append("<th><button>Findings</button></th>")
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src 'self' file:; \
+style-src 'unsafe-inline'; script-src 'unsafe-inline'">
+<title>{escape(name)}</title>
+<style>{_STYLE}</style>
+</head>
+<body>
+<h1>{escape(name)}</h1>
+<p>{escape(note)}</p>
+<p>{", ".join(counts)}. The numbers are in <a href="report.csv">report.csv</a> too. Each picture carries its
+recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
+<form hidden>
+<label>Search <input type="search" name="words" autocomplete="off"></label>
+<label>Method <select name="variant"><option value="">all</option>{options}</select></label>
+<label>State <select name="state"><option value="">all</option><option value="made">made</option>\
+<option value="found">with findings</option><option value="failed">failed</option></select></label>
+<span id="shown" role="status"></span>
+</form>
+<table>
+<thead><tr>{"".join(headers)}</tr></thead>
+<tbody>
+{"".join(_row(row, measures) for row in rows)}</tbody>
+</table>
+<script>{_SCRIPT}</script>
+</body>
+</html>
+"""
+
+
+def _row(row: Row, measures: Sequence[str]) -> str:
+    about = row.about
+    state = "failed" if row.error else " ".join(["made", *(["found"] if row.findings else [])])
+    words = " ".join([row.title, row.error, *row.findings]).lower()
+    part = f"<small>{escape(about['part'])}</small>" if about["part"] else ""
+    cells = [
+        f"<td>{_image(row.exemplar)}</td>",
+        f"<td>{_image(row.thumbnail, row.picture, row.title)}</td>",
+        f'<td data-value="{escape(about["input"])}">{escape(about["input"])}{part}</td>',
+        f"<td>{escape(about['variant'])}</td>",
+        f"<td>{escape(row.size)}</td>",
+        f'<td class="number">{about["seed"]}</td>',
+    ]
+    for name in measures:
+        value = (row.measures or {}).get(name)
+        shown = "" if value is None else f"{value:.4g}"
+        cells.append(f'<td class="number" data-value="{"" if value is None else repr(value)}">{shown}</td>')
+    if row.error:
+        cells.append(f'<td class="error">{escape(row.error)}</td>')
+    else:
+        items = "".join(f"<li>{escape(each)}</li>" for each in row.findings)
+        cells.append(f"<td>{f'<ul>{items}</ul>' if items else ''}</td>")
+    data = f'data-state="{state}" data-variant="{escape(about["variant"])}" data-text="{escape(words)}"'
+    return f"<tr {data}>{''.join(cells)}</tr>\n"
+
+
+def _image(path: str, link: str = "", title: str = "exemplar") -> str:
+    if not path:
+        return ""
+    image = f'<img src="{quote(path)}" alt="{escape(title)}" loading="lazy">'
+    return f'<a href="{quote(link)}">{image}</a>' if link else image

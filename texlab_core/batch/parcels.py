@@ -1,0 +1,119 @@
+"""Inputs on their way to where they are needed: what they are made from once, and how each is taken from it."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input, Inputs, hash_arrays
+from texlab_core.errors import InputError
+from texlab_core.images.exemplar import take
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Parcel = Mapping[str, "NDArray[Any]"]
+"""Named arrays: the pixels of a source, or the arrays of a state."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slip:
+    """How one input is made from a parcel.
+
+    Parameters
+    ----------
+    kind
+        "image", "arrays" or "data".
+    name, sha256
+        Of the input; what comes out must have this hash.
+    parcel
+        SHA-256 of the arrays it is made from; empty for data, which travel with the slip.
+    scale, crop
+        How an image is taken from its source.
+    notes
+        What was converted when the image was read.
+    data
+        A small JSON document.
+    """
+
+    kind: str
+    name: str
+    sha256: str
+    parcel: str = ""
+    scale: float = 1.0
+    crop: Crop | None = None
+    notes: tuple[str, ...] = ()
+    data: Any = None
+
+    def unpack(self, parcels: Mapping[str, Parcel]) -> Input:
+        """Return the input.
+
+        Raises
+        ------
+        InputError
+            When what comes out is not what was sent.
+        """
+        found: Input
+        if self.kind == "data":
+            found = DataInput(self.data, self.name)
+        elif self.kind == "arrays":
+            found = ArraysInput(parcels[self.parcel], self.name)
+        else:
+            found = take(parcels[self.parcel]["pixels"], self.name, self.crop, self.scale, self.notes)
+        if found.sha256 != self.sha256:
+            raise InputError(
+                f"{self.name}: has other values where it arrived than where it was read; the two places have "
+                "different libraries."
+            )
+        return found
+
+
+class Packer:
+    """Packs inputs; the hash of a source that several inputs in a row share is computed once."""
+
+    def __init__(self) -> None:
+        self._source: NDArray[Any] | None = None
+        self._hash = ""
+
+    def pack(self, inputs: Inputs) -> tuple[Mapping[str, Slip], Mapping[str, Parcel]]:
+        """Return the slips by role, and the parcels that they need by hash."""
+        slips: dict[str, Slip] = {}
+        parcels: dict[str, Parcel] = {}
+        for role, given in inputs.items():
+            if isinstance(given, ImageInput):
+                slips[role] = self._image(given, parcels)
+            elif isinstance(given, ArraysInput):
+                slips[role] = Slip("arrays", given.name, given.sha256, given.sha256)
+                parcels[given.sha256] = given.arrays
+            else:
+                slips[role] = Slip("data", given.name, given.sha256, data=given.data)
+        return slips, parcels
+
+    def _image(self, given: ImageInput, parcels: dict[str, Parcel]) -> Slip:
+        origin = given.origin
+        pixels = given.pixels if origin is None else origin.pixels
+        if self._source is not pixels:
+            self._source, self._hash = pixels, hash_arrays({"pixels": pixels})
+        parcels[self._hash] = {"pixels": pixels}
+        scale, crop = (1.0, None) if origin is None else (origin.scale, origin.crop)
+        return Slip("image", given.name, given.sha256, self._hash, scale, crop, given.notes)
+
+
+class Unpacked:
+    """The inputs that were unpacked last, so that the jobs of one exemplar share it and its hash."""
+
+    def __init__(self, capacity: int = 8) -> None:
+        self._capacity = capacity
+        self._inputs: OrderedDict[tuple[object, ...], Input] = OrderedDict()
+
+    def get(self, slip: Slip, parcels: Mapping[str, Parcel]) -> Input:
+        """Return the input of a slip; raises ``InputError`` like :meth:`Slip.unpack`."""
+        key = (slip.kind, slip.name, slip.sha256, slip.parcel, slip.scale, slip.crop, slip.notes)
+        found = self._inputs.get(key)
+        if found is None:
+            found = self._inputs[key] = slip.unpack(parcels)
+            while len(self._inputs) > self._capacity:
+                self._inputs.popitem(last=False)
+        return found

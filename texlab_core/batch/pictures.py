@@ -1,0 +1,81 @@
+"""What is sent back from where a job ran: the picture with its recipe, a small one, and numbers."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from texlab_core.documents.reading import KEY
+from texlab_core.documents.recipe import recipe_json
+from texlab_core.images.formats.writing import encode_image, encode_png, quantize
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
+    from texlab_core.images.formats.writing import Bits
+
+THUMBNAIL = 128
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A finished job, ready to be written.
+
+    Parameters
+    ----------
+    png
+        The file with its recipe.
+    thumbnail
+        A small PNG, its longest side at most 128 pixels.
+    sha256
+        Of the pixels before they were rounded: shape and float32 values.
+    measures
+        Numbers by name; None where one is not finite.
+    findings
+        What is wrong with it, one sentence each.
+    notes
+        What was done to the input.
+    """
+
+    png: bytes
+    thumbnail: bytes
+    sha256: str
+    measures: Mapping[str, float | None] = field(default_factory=dict)
+    findings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def finish(result: Result, *, bits: Bits = 8) -> Picture:
+    """Return what is kept of a result."""
+    recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
+    digest = hashlib.sha256(f"{result.image.shape}".encode())
+    digest.update(result.image.tobytes())
+    return Picture(
+        png=encode_image("result.png", result.image, bits=bits, text={KEY: recipe}),
+        thumbnail=thumbnail(result.image),
+        sha256=digest.hexdigest(),
+        measures={name: _finite(value) for name, value in result.measures.items()},
+        notes=result.notes,
+    )
+
+
+def thumbnail(image: FloatImage, longest: int = THUMBNAIL) -> bytes:
+    """Return a small PNG of an image, by area averaging; a small image stays as it is."""
+    height, width = image.shape[:2]
+    scale = min(1.0, longest / max(height, width))
+    small: Any = image
+    if scale < 1:
+        import cv2
+
+        size = max(1, round(width * scale)), max(1, round(height * scale))
+        small = cv2.resize(image, size, interpolation=cv2.INTER_AREA).reshape(size[1], size[0], -1)
+    return encode_png(quantize(small, 255))
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

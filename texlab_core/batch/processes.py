@@ -1,0 +1,241 @@
+"""Several processes on this machine.
+
+They are those of ``concurrent.futures``. It is part of Python, starts in the time that imports take and opens no
+port; joblib's pool does the same with one more library (its memory-mapped arguments are not needed, since inputs
+travel by hash), and Dask's ``LocalCluster`` needs a scheduler and a supervisor for each process, which pay off
+only where several machines share the work. What it lacks, going on after a process has died, is done here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import shutil
+import signal
+import tempfile
+import threading
+from collections import OrderedDict
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from texlab_core.batch.orders import Order, Outcome, Workbench
+from texlab_core.batch.places import POLL_S
+from texlab_core.errors import Cancelled, ParamError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from multiprocessing.synchronize import Event
+
+    from texlab_core.batch.parcels import Parcel
+    from texlab_core.batch.places import Loaded, Outcomes, ShouldStop
+
+MAX_PROCESSES = 256
+# An order whose process died gets so many more, each alone, before it is given up.
+CHANCES = 2
+DIED = "The process that ran it ended without a word {} times; there may be too little memory for it."
+
+
+class Processes:
+    """Orders run in processes of their own, each of which keeps its last inputs and analyses.
+
+    Parameters
+    ----------
+    count
+        How many; None means one for each core.
+    scratch
+        Folder through which inputs reach them, removed at the end; None makes one for temporary files.
+    """
+
+    title = "local processes"
+
+    def __init__(self, count: int | None = None, scratch: Path | None = None) -> None:
+        count = (os.cpu_count() or 1) if count is None else count
+        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_PROCESSES:
+            raise ParamError("processes", f"a whole number from 1 to {MAX_PROCESSES}", count)
+        self.width = count
+        self.scratch = scratch
+
+    def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
+        """Carry orders out; see :meth:`texlab_core.batch.places.Place.run`."""
+        folder = Path(tempfile.mkdtemp(prefix="texlab-batch-")) if self.scratch is None else self.scratch
+        crew = _Crew(self.width, _Drop(folder))
+        try:
+            yield from crew.outcomes(iter(orders), should_stop)
+        finally:
+            crew.end()
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+class _Crew:
+    """A pool that is made again when one of its processes dies."""
+
+    def __init__(self, width: int, drop: _Drop) -> None:
+        self._width = width
+        self._drop = drop
+        # A child of a program with threads must not be a copy of it.
+        self._context = multiprocessing.get_context("spawn")
+        self._stop: Event = self._context.Event()
+        self._pool: ProcessPoolExecutor | None = None
+
+    def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
+        waiting: dict[Future[Outcome], Order] = {}
+        lost: list[Order] = []
+        more = True
+        while more or waiting or lost:
+            if should_stop is not None and should_stop():
+                raise Cancelled
+            if lost and not waiting:
+                self._renew()
+                for order in lost:
+                    yield self._alone(order, should_stop)
+                    self._drop.leave(order)
+                lost = []
+            while more and not lost and len(waiting) < 2 * self._width:
+                loaded = next(orders, None)
+                if loaded is None:
+                    more = False
+                    break
+                order = loaded[0]
+                self._drop.bring(order, loaded[1])
+                try:
+                    waiting[self._submit(order)] = order
+                except BrokenProcessPool:
+                    lost.append(order)
+            for future in wait(waiting, POLL_S, FIRST_COMPLETED).done:
+                order = waiting.pop(future)
+                try:
+                    outcome = future.result()
+                except BrokenProcessPool:
+                    lost.append(order)
+                    continue
+                yield outcome
+                self._drop.leave(order)
+
+    def _submit(self, order: Order) -> Future[Outcome]:
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(
+                self._width,
+                mp_context=self._context,
+                initializer=_start,
+                initargs=(self._stop, str(self._drop.folder)),
+            )
+        return self._pool.submit(_carry_out, order)
+
+    def _alone(self, order: Order, should_stop: ShouldStop | None) -> Outcome:
+        """Run an order that was lost with nothing beside it, so that it is clear which one kills its process."""
+        for _ in range(CHANCES):
+            future = self._submit(order)
+            try:
+                while not wait([future], POLL_S).done:
+                    if should_stop is not None and should_stop():
+                        raise Cancelled
+                return future.result()
+            except BrokenProcessPool:
+                self._renew()
+        return Outcome(order.key, error=DIED.format(CHANCES + 1))
+
+    def _renew(self) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(wait=True, cancel_futures=True)
+            self._pool = None
+
+    def end(self) -> None:
+        """Stop what runs, at its next step, and wait until every process has ended."""
+        self._stop.set()
+        self._renew()
+
+
+class _Drop:
+    """The folder where inputs lie while orders that need them are on their way."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._needed: dict[str, int] = {}
+        self._newest: frozenset[str] = frozenset()
+
+    def bring(self, order: Order, parcels: Mapping[str, Parcel]) -> None:
+        """Write what is not there yet."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        before, self._newest = self._newest, frozenset(parcels)
+        for name, parcel in parcels.items():
+            if name not in self._needed:
+                temporary = self.folder / f"{name}.tmp"
+                with open(temporary, "wb") as file:
+                    np.savez(file, allow_pickle=False, **parcel)
+                os.replace(temporary, self._file(name))
+            self._needed[name] = self._needed.get(name, 0) + 1
+        self._tidy(before)
+
+    def leave(self, order: Order) -> None:
+        """Count an order as done; what nobody needs goes, except for what came last."""
+        for name in order.parcels:
+            self._needed[name] -= 1
+        self._tidy(order.parcels)
+
+    def _tidy(self, names: Iterable[str]) -> None:
+        for name in names:
+            if name in self._needed and not self._needed[name] and name not in self._newest:
+                del self._needed[name]
+                self._file(name).unlink(missing_ok=True)
+
+    def _file(self, name: str) -> Path:
+        return self.folder / f"{name}.npz"
+
+
+class _Here:
+    """What one of the processes keeps."""
+
+    def __init__(self, stop: Event, folder: Path) -> None:
+        self.stop = stop
+        self.folder = folder
+        self.bench = Workbench()
+        self.parcels: OrderedDict[str, Parcel] = OrderedDict()
+
+    def parcel(self, name: str) -> Parcel:
+        """Return a parcel, read from the folder unless it is one of the last two."""
+        if name not in self.parcels:
+            with np.load(self.folder / f"{name}.npz", allow_pickle=False) as arrays:
+                self.parcels[name] = {key: _sealed(arrays[key]) for key in arrays.files}
+            while len(self.parcels) > 2:
+                self.parcels.popitem(last=False)
+        return self.parcels[name]
+
+
+def _sealed(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    array.flags.writeable = False
+    return array
+
+
+_here: list[_Here] = []
+
+
+def _start(stop: Event, folder: str) -> None:
+    """Prepare a process: Ctrl-C is for the one that started it, and it ends when that one does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="texlab-parent").start()
+    with contextlib.suppress(ImportError):
+        import cv2
+
+        # There is a process for each core already.
+        cv2.setNumThreads(1)
+    _here.append(_Here(stop, Path(folder)))
+
+
+def _end_with(sentinel: int) -> None:
+    from multiprocessing.connection import wait as wait_for
+
+    wait_for([sentinel])
+    os._exit(1)
+
+
+def _carry_out(order: Order) -> Outcome:
+    here = _here[-1]
+    parcels = {name: here.parcel(name) for name in order.parcels}
+    return here.bench.carry_out(order, parcels, here.stop.is_set)

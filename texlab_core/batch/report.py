@@ -1,0 +1,63 @@
+"""The report of a batch: a table for spreadsheets, and a page to look through; neither needs a network."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from typing import TYPE_CHECKING, Any
+
+from texlab_core.batch.page import page_of
+from texlab_core.batch.rows import Row, measure_names
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from texlab_core.batch.folder import BatchFolder
+    from texlab_core.batch.plan import Plan
+
+TABLE, PAGE = "report.csv", "index.html"
+_COLUMNS = ("input", "part", "variant", "method", "parameters", "width", "height", "seed", "picture", "job")
+
+
+def table_of(rows: Sequence[Row]) -> str:
+    """Return the rows as CSV."""
+    names = measure_names(rows)
+    out = io.StringIO()
+    writer = csv.writer(out)
+    writer.writerow([*_COLUMNS, *names, "findings", "error"])
+    for row in rows:
+        about = row.about
+        size = about.get("size") or {"width": "", "height": ""}
+        cells: list[Any] = [about["input"], about["part"], about["variant"], about["method"]]
+        cells += [json.dumps(about["parameters"], sort_keys=True), size["width"], size["height"], about["seed"]]
+        cells += [row.picture, row.job]
+        cells += ["" if (value := (row.measures or {}).get(name)) is None else repr(value) for name in names]
+        cells += [" ".join(row.findings), row.error]
+        writer.writerow([_harmless(cell) for cell in cells])
+    return out.getvalue()
+
+
+def _harmless(cell: Any) -> Any:
+    # A spreadsheet would take a name that starts like this for a formula.
+    return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "@", "\t") else cell
+
+
+def write_report(folder: BatchFolder, plan: Plan, rows: Sequence[Row], total: int) -> tuple[Path, Path]:
+    """Write page and table; return their paths.
+
+    Parameters
+    ----------
+    folder
+        Of the batch.
+    plan
+        For its name and note.
+    rows
+        The jobs that are over.
+    total
+        How many there will be.
+    """
+    table = folder.write(TABLE, table_of(rows))
+    page = folder.write(PAGE, page_of(plan.name, plan.note, rows, measure_names(rows), total))
+    return page, table
