@@ -3,7 +3,6 @@
 PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
-SCREEN := -o xvfb_width=1920 -o xvfb_height=1200 -o xvfb_colordepth=24
 
 .PHONY: run test lint fmt bench wheel screenshot clean distclean
 .DEFAULT_GOAL := run
@@ -11,19 +10,12 @@ SCREEN := -o xvfb_width=1920 -o xvfb_height=1200 -o xvfb_colordepth=24
 run: .venv/.ready-run
 	@$(PY) .ci/run_explorer.py
 
-# The last pytest run is the whole suite, so that its summary is the last line.
-test: lint
-	@if command -v Xvfb >/dev/null; then echo "== window tests under Xvfb"; \
-		TEXLAB_TEST_PLATFORM=xcb $(PY) -m pytest tests/gui -q $(SCREEN); fi
-	@echo "== all tests, off screen"
-	@$(PY) -m pytest -q --no-xvfb --cov --cov-report=term:skip-covered --coverage-floors
+# The last stage is pytest's, so that its summary is the last line.
+test: .venv/.ready-test
+	@$(PY) .ci/check.py test
 
 lint: .venv/.ready-test
-	@echo "== ruff, mypy, import contracts"
-	@$(PY) -m ruff check .
-	@$(PY) -m ruff format --check .
-	@$(PY) -m mypy
-	@$(BIN)/lint-imports
+	@$(PY) .ci/check.py lint
 
 fmt: .venv/.ready-test
 	@$(PY) -m ruff check --fix .
