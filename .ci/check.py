@@ -1,6 +1,6 @@
 """Everything that must hold, stage by stage, with the time of each: ``python .ci/check.py [lint|test]``.
 
-Runs in the virtual environment that ``setup_env.py`` has made. Stops at the first stage that fails, with its exit code.
+Runs in the virtual environment that ``setup_env.py`` has made, and stops at the first stage that fails.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ LINT = {
     "ruff": [PYTHON, "-m", "ruff", "check", "."],
     "format": [PYTHON, "-m", "ruff", "format", "--check", "."],
     "types": [PYTHON, "-m", "mypy"],
-    "import contracts": [PYTHON, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"],
+    "import contracts": [
+        PYTHON,
+        "-c",
+        "from importlinter.cli import lint_imports_command; lint_imports_command()",
+    ],
 }
 COVERAGE = ["--cov", "--cov-report="]
 SCREEN = ["-o", "xvfb_width=1920", "-o", "xvfb_height=1200", "-o", "xvfb_colordepth=24"]

@@ -12,9 +12,9 @@ import scipy.fft
 
 from tests.core.spectral_tools import ANY, analyzed, synthesized, texture
 from texlab_core.engine.job import Job
-from texlab_core.engine.progress import finish
 from texlab_core.engine.run import run
 from texlab_core.methods.spectral.codefile import code_input
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from collections.abc import Callable

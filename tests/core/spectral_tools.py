@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.engine.progress import Progress, finish
+from texlab_core.engine.progress import Progress
 from texlab_core.engine.streams import Streams
 from texlab_core.methods.spectral.analysis import analyze_plane
 from texlab_core.methods.spectral.fourier import random_phase
@@ -14,6 +14,7 @@ from texlab_core.methods.spectral.marginal import Histogram16
 from texlab_core.methods.spectral.synthesis import Design, design, synthesize_plane
 from texlab_core.methods.spectral.tone import Tone
 from texlab_core.transforms.gabor_bank import CENTRES_U, CENTRES_V, CHANNELS, WIDTHS
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

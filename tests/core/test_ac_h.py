@@ -7,12 +7,12 @@ import pytest
 
 from tests.core.spectral_tools import ANY, sinusoid, texture, white
 from texlab_core.engine.job import Job
-from texlab_core.engine.progress import finish
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.acf import PARAMETERS, Acf, measure, shape_noise, spectrum
 from texlab_core.methods.spectral.fourier import random_phase
+from texlab_core.work.tasks import finish
 
 
 def test_there_are_60_samples_and_the_variance() -> None:

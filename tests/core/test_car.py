@@ -7,7 +7,6 @@ import pytest
 
 from tests.core.spectral_tools import ANY, texture
 from texlab_core.engine.job import Job
-from texlab_core.engine.progress import finish
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
@@ -23,6 +22,7 @@ from texlab_core.methods.spectral.car import (
 )
 from texlab_core.methods.spectral.fourier import random_phase
 from texlab_core.methods.spectral.method_car import CarParams
+from texlab_core.work.tasks import finish
 
 
 def model_of(weights: dict[tuple[int, int], float], noise: float = 3.0) -> Car:

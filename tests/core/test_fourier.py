@@ -99,6 +99,16 @@ def test_whole_spectra_in_pieces_are_the_transform(monkeypatch, shape, kind):
         np.testing.assert_allclose(finish(fourier.ifft2(spectrum)), image, atol=1e-5)
 
 
-def test_the_periodic_part_is_found_in_pieces():
-    pieces = list(fourier.periodic_component_task(picture((32, 48))))
-    assert len(pieces) >= 4
+def test_the_periodic_part_is_found_in_pieces(monkeypatch):
+    image = picture((700, 701))
+    expected = fourier.periodic_component(image)
+    monkeypatch.setattr(fourier, "LARGE", 0)
+    assert len(list(fourier.periodic_component_task(image))) >= 4
+    np.testing.assert_allclose(fourier.periodic_component(image), expected, atol=1e-13)
+
+
+def test_channels_lose_their_jumps_one_by_one():
+    image = picture((9, 12, 3))
+    periodic = fourier.periodic_component(image)
+    for channel in range(3):
+        np.testing.assert_array_equal(periodic[..., channel], fourier.periodic_component(image[..., channel]))

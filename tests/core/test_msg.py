@@ -22,7 +22,6 @@ from tests.core.spectral_tools import (
 from texlab_core.api import synthesize
 from texlab_core.engine.inputs import DataInput
 from texlab_core.engine.job import Job
-from texlab_core.engine.progress import finish
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
@@ -39,6 +38,7 @@ from texlab_core.transforms.gabor_bank import (
     WIDTHS,
     residual_reach,
 )
+from texlab_core.work.tasks import finish
 
 SIZES = [(256, 256), (128, 128), (480, 640), (129, 200), (77, 301)]
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from tests.contract.cases import assert_sentence
-from texlab_core.engine.progress import finish
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.codefile import CodeError, code_from_json, code_to_json, read_code, write_code
 from texlab_core.methods.spectral.encoding import encode
 from texlab_core.methods.spectral.marginal import Histogram16, encode_histogram, gray_level_distance, quantiles
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,11 +14,11 @@ from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats.peaks import Peak, find_peaks, match_peaks, predicted_snap, shift
 from texlab_core.stats.spectrum import (
     QUANTIZATION,
-    gray_plane,
     log_spectral_distance,
     power_spectrum,
     total_variation,
 )
+from texlab_core.transforms.luma import luma
 
 SIZES = [(64, 64), (33, 50), (51, 33), (64, 31), (1, 8), (7, 1), (1, 1)]
 
@@ -179,7 +179,7 @@ def test_msg_moves_the_strongest_peak_of_gallery_textures_as_predicted(name: str
 def test_luminance_weighs_the_channels() -> None:
     pixels = np.zeros((2, 2, 3), np.float32)
     pixels[0, 0, 0] = pixels[0, 1, 1] = pixels[1, 0, 2] = 1
-    np.testing.assert_allclose(gray_plane(pixels), [[0.299, 0.587], [0.114, 0]], atol=1e-6)
+    np.testing.assert_allclose(luma(pixels), [[0.299, 0.587], [0.114, 0]], atol=1e-6)
 
 
 def test_a_spectrum_can_be_stopped_between_its_parts():
@@ -191,7 +191,7 @@ def test_a_spectrum_can_be_stopped_between_its_parts():
     whole = power_spectrum(image, lambda: moments.append(1))
     # Luminance, the mean, and blocks of at most 2^19 samples of rows, columns and powers.
     assert len(moments) > 8
-    assert whole.variance == pytest.approx(float(gray_plane(image).var(dtype=np.float64)), rel=1e-5)
+    assert whole.variance == pytest.approx(float(luma(image).var(dtype=np.float64)), rel=1e-5)
     for count in (1, 2, len(moments)):
         seen = []
 

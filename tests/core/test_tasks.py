@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from texlab_core.work.tasks import Pace, crew, finish, row_blocks
+from texlab_core.work.tasks import Pace, crew, finish, now_and_then, relay, row_blocks, through
 from texlab_core.work.threads import use_workers
 
 
@@ -122,3 +122,38 @@ def test_finish_looks_before_every_piece_and_can_be_stopped():
     with pytest.raises(Stop):
         finish(work(), look)
     assert looks == [0, 1, 2, 3]
+
+
+def counting(closed: list[str]):
+    try:
+        yield 1
+        yield 2
+    finally:
+        closed.append("closed")
+    return "done"
+
+
+def test_what_one_yields_is_turned_into_what_another_yields() -> None:
+    closed: list[str] = []
+    relayed = relay(counting(closed), lambda item: item * 10)
+    assert [next(relayed), next(relayed)] == [10, 20]
+    with pytest.raises(StopIteration) as end:
+        next(relayed)
+    assert end.value.value == "done"
+    assert finish(through(counting(closed), "same")) == "done"
+
+
+def test_a_relayed_task_is_closed_with_what_relays_it() -> None:
+    closed: list[str] = []
+    for relayed in (relay(counting(closed), str), now_and_then(counting(closed), -1.0, lambda: 0)):
+        next(relayed)
+        relayed.close()
+    assert closed == ["closed", "closed"]
+
+
+def test_many_pieces_make_a_step_now_and_then() -> None:
+    assert list(now_and_then(counting([]), -1.0, lambda: "step")) == ["step", "step"]
+    quiet = now_and_then(counting([]), 1e9, lambda: "step")
+    with pytest.raises(StopIteration) as end:
+        next(quiet)
+    assert end.value.value == "done"

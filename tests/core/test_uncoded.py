@@ -8,7 +8,7 @@ import scipy.fft
 
 from tests.core.spectral_tools import ANY, texture
 from texlab_core.engine.job import Job
-from texlab_core.engine.progress import Progress, finish
+from texlab_core.engine.progress import Progress
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
@@ -16,6 +16,7 @@ from texlab_core.methods.spectral.fourier import draw_phase, make_hermitian, mea
 from texlab_core.methods.spectral.method_uncoded import UncodedParams
 from texlab_core.methods.spectral.uncoded import give_phase, make_spot, parameter_count, spectra, subtract_smooth
 from texlab_core.transforms.fourier import periodic_component
+from texlab_core.work.tasks import finish
 
 CHANNELS = Progress({f"s {channel}": 1.0 for channel in (1, 2, 3)})
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab_core.engine.job import MAX_SEED
+from texlab_core.engine.job import DEFAULT_SIZE, MAX_SEED
 
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input
@@ -65,7 +65,7 @@ class State:
     sample: Sample | None = None
     columns: tuple[Column, ...] = ()
     seed: int = 1
-    size: tuple[int, int] = (256, 256)
+    size: tuple[int, int] = DEFAULT_SIZE
     next_id: int = 1
 
     def column(self, column_id: int) -> Column | None:

@@ -12,7 +12,6 @@ from texlab.storage.kept_exemplar import Kept, kept_path, load
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
 
 DOCUMENT_SUFFIX = ".json"
-IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".pgm", ".ppm", ".pnm")
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
-from texlab_core.engine.job import check_seed, check_size
+from texlab_core.engine.job import DEFAULT_SIZE, check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
 from texlab_core.errors import InputError
 from texlab_core.files.whole import write_whole
@@ -159,4 +159,4 @@ def seed_and_size(data: Any) -> tuple[int, tuple[int, int]]:
     try:
         return check_seed(data["seed"]), check_size(tuple(data["size"]))
     except (InputError, KeyError, TypeError):
-        return 1, (256, 256)
+        return 1, DEFAULT_SIZE

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from texlab_core.transforms.luma import LUMA
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
@@ -22,6 +24,11 @@ GOLDEN = 0.6180339887498949
 KEY_SIDE = 256
 
 Scaling = Literal["linear", "log"]
+
+
+def ink_on(red: int, green: int, blue: int) -> str:
+    """Return the colour of words on a colour (0 .. 255 each): black on light ones, white on dark ones."""
+    return "#000000" if float(np.dot(LUMA, (red, green, blue))) > 140 else "#ffffff"
 
 
 @dataclass(frozen=True)

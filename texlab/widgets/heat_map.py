@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from texlab.style.colouring import paint
+from texlab.style.colouring import ink_on, paint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,9 +137,7 @@ class HeatMap(QWidget):
         words = self._texts[row][column]
         metrics = self.fontMetrics()
         if metrics.horizontalAdvance(words) <= area.width() and metrics.height() <= area.height() + 4:
-            # Black on light cells, white on dark ones (luma of BT.601).
-            light = 0.299 * red + 0.587 * green + 0.114 * blue > 140
-            painter.setPen(QColor("#000000" if light else "#ffffff"))
+            painter.setPen(QColor(ink_on(red, green, blue)))
             painter.drawText(area, Qt.AlignmentFlag.AlignCenter, words)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
-from texlab.storage.reading import IMAGE_SUFFIXES
 from texlab.window.mime import source_of
+from texlab_core.images.formats.reading import READABLE_SUFFIXES
 
 if TYPE_CHECKING:
     from texlab.runs.controller import Controller
@@ -29,7 +29,7 @@ class Exchange:
 
     def ask_open(self) -> None:
         """Ask for an image, a code or a preset."""
-        pattern = " ".join(f"*{suffix}" for suffix in IMAGE_SUFFIXES)
+        pattern = " ".join(f"*{suffix}" for suffix in READABLE_SUFFIXES)
         kinds = f"Images ({pattern});;MSG codes and presets (*.json);;All files (*)"
         folder = self._settings.text("open-folder")
         path, _ = QFileDialog.getOpenFileName(self._window, "Open image", folder, kinds)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MAX_PIXELS = 64 * 2**20
 MAX_SEED = 2**31 - 1
+# Of an output that nothing else decides.
+DEFAULT_SIZE = (256, 256)
 _KINDS = {"image": ImageInput, "data": DataInput, "arrays": ArraysInput}
 
 
@@ -66,7 +68,7 @@ class Job:
 
     def _default_size(self) -> tuple[int, int]:
         exemplar = self.inputs.get("exemplar")
-        return exemplar.size if isinstance(exemplar, ImageInput) else (256, 256)
+        return exemplar.size if isinstance(exemplar, ImageInput) else DEFAULT_SIZE
 
     @property
     def analysis_key(self) -> tuple[object, ...]:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from texlab_core.engine.steps import FloatImage, Step
+from texlab_core.work.tasks import relay
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping
+
+    from texlab_core.work.tasks import Task
 
 ValueT = TypeVar("ValueT")
 _UNITS = 1000
@@ -46,19 +49,15 @@ class Progress:
         self, fractions: Generator[float, None, ValueT], stage: str, low: float = 0.0, high: float = 1.0
     ) -> Generator[Step, None, ValueT]:
         """Turn a generator of fractions into Steps between two fractions of a stage."""
-        try:
-            while True:
-                yield self.at(stage, low + (high - low) * next(fractions))
-        except StopIteration as end:
-            value: ValueT = end.value
-            return value
+        return relay(fractions, lambda fraction: self.at(stage, low + (high - low) * fraction))
 
+    def count(self, task: Task[ValueT], stage: str, total: int) -> Generator[Step, None, ValueT]:
+        """Turn a task that tells how much it has worked, ``total`` in all, into Steps of a stage."""
+        done = 0
 
-def finish(steps: Generator[Step, None, ValueT]) -> ValueT:
-    """Run a generator of Steps to its end and return its value."""
-    try:
-        while True:
-            next(steps)
-    except StopIteration as end:
-        value: ValueT = end.value
-        return value
+        def tell(work: int) -> Step:
+            nonlocal done
+            done = min(total, done + work)
+            return self.at(stage, done / total)
+
+        return relay(task, tell)

@@ -14,6 +14,7 @@ import numpy as np
 
 from texlab_core.stats import filter_bands
 from texlab_core.transforms import gaussian, laplacian, steerable
+from texlab_core.transforms.luma import LUMA
 from texlab_core.transforms.steerable import BandKey
 from texlab_core.work.tasks import go_on
 
@@ -34,7 +35,6 @@ Channel = Literal["luma", "red", "green", "blue", "axis 1", "axis 2", "axis 3"]
 CHANNELS: tuple[Channel, ...] = get_args(Channel)
 
 # ITU-R BT.601, for values as stored.
-LUMA = (0.299, 0.587, 0.114)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,6 +17,7 @@ import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
 from texlab_core.transforms import fourier
+from texlab_core.transforms.luma import luma
 from texlab_core.work.tasks import finish, go_on, row_blocks
 from texlab_core.work.threads import workers
 
@@ -32,7 +33,6 @@ Floats: TypeAlias = NDArray[np.float64]
 QUANTIZATION = (1 / 255) ** 2 / 12
 # Cells per axis in which spectra are averaged before they are compared.
 _CELLS = 64
-_LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,16 +134,6 @@ class Spectrum:
         return Profile((np.arange(bins, dtype=np.float64) + 0.5) * step, np.asarray(power, np.float64))
 
 
-def gray_plane(image: FloatImage) -> Plane:
-    """Return the luminance of an image (H, W, C) as (H, W) float32."""
-    if image.shape[2] == 1:
-        return np.ascontiguousarray(image[:, :, 0])
-    plane: Plane = image[:, :, 0] * _LUMA[0]
-    plane += image[:, :, 1] * _LUMA[1]
-    plane += image[:, :, 2] * _LUMA[2]
-    return plane
-
-
 def power_spectrum(image: FloatImage, look: Callable[[], None] = go_on) -> Spectrum:
     """Return the power spectrum of the luminance of an image.
 
@@ -155,7 +145,7 @@ def power_spectrum(image: FloatImage, look: Callable[[], None] = go_on) -> Spect
         Called between the parts; may raise to stop.
     """
     look()
-    plane = gray_plane(image)
+    plane = luma(image)
     look()
     transform = finish(fourier.rfft2(plane - np.float32(plane.mean(dtype=np.float64))), look)
     power = np.empty(transform.shape, np.float32)

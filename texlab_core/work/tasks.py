@@ -1,12 +1,17 @@
-"""Independent pieces of a computation on several threads, with results that do not depend on how many.
+"""The one protocol for long work: a generator that yields every few milliseconds and returns its result.
 
-A task is a generator: it yields often (every few milliseconds) how much it has worked, and returns its result.
+What it yields is up to who asks: how much was worked (a :data:`Task`), a fraction, a Step. Stopping is the
+caller's: whoever drives a generator closes it, or does not go on. :func:`finish` runs one to its end;
+:func:`relay` and :func:`through` turn what one yields into what another yields; :func:`now_and_then` and
+:class:`Pace` make fewer steps of many pieces; :func:`row_blocks` cuts arrays; :func:`crew` runs independent tasks
+on several threads, with results that do not depend on how many.
 """
 
 from __future__ import annotations
 
 import math
 import threading
+import time
 from collections import deque
 from collections.abc import Generator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -20,6 +25,7 @@ from texlab_core.work.threads import workers
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
+ItemT = TypeVar("ItemT")
 ResultT = TypeVar("ResultT")
 StepT = TypeVar("StepT")
 Task = Generator[int, None, ResultT]
@@ -43,15 +49,42 @@ def finish(task: Generator[Any, None, ResultT], look: Callable[[], None] = go_on
             return result
 
 
+def relay(
+    task: Generator[ItemT, None, ResultT], tell: Callable[[ItemT], StepT]
+) -> Generator[StepT, None, ResultT]:
+    """Yield ``tell(item)`` for every item that ``task`` yields, and return what it returns."""
+    try:
+        while True:
+            item = next(task)
+            yield tell(item)
+    except StopIteration as end:
+        result: ResultT = end.value
+        return result
+    finally:
+        task.close()
+
+
 def through(task: Generator[Any, None, ResultT], item: StepT) -> Generator[StepT, None, ResultT]:
     """Yield ``item`` whenever ``task`` yields, and return what it returns."""
-    while True:
-        try:
+    return relay(task, lambda _: item)
+
+
+def now_and_then(
+    task: Generator[Any, None, ResultT], seconds: float, make: Callable[[], StepT]
+) -> Generator[StepT, None, ResultT]:
+    """Run a task of many small pieces, yielding ``make()`` whenever ``seconds`` have passed."""
+    begin = time.perf_counter()
+    try:
+        while True:
             next(task)
-        except StopIteration as end:
-            result: ResultT = end.value
-            return result
-        yield item
+            if time.perf_counter() - begin > seconds:
+                yield make()
+                begin = time.perf_counter()
+    except StopIteration as end:
+        result: ResultT = end.value
+        return result
+    finally:
+        task.close()
 
 
 def row_blocks(shape: Sequence[int], samples: int = 2**19) -> list[slice]:

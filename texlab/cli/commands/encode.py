@@ -42,10 +42,10 @@ def execute(args: argparse.Namespace) -> int:
     out = output_file(args.out)
     refuse_overwriting(out, args.image)
 
-    from texlab_core.engine.progress import finish
     from texlab_core.images.exemplar import as_exemplar
     from texlab_core.methods.spectral.codefile import code_to_json, write_code
     from texlab_core.methods.spectral.encoding import encode
+    from texlab_core.work.tasks import finish
 
     exemplar = as_exemplar(args.image, scale=scale, crop=crop)
     code, _ = finish(encode(exemplar.pixels, args.bandwidths))

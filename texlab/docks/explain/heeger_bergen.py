@@ -19,17 +19,15 @@ from texlab.widgets.plots import pg
 from texlab_core.errors import Cancelled
 from texlab_core.methods.heeger_bergen.contributions import contributions
 from texlab_core.methods.heeger_bergen.method import Convergence, HeegerBergenParams
-from texlab_core.stats.bands import LUMA, names
+from texlab_core.stats.bands import names
+from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab_core.engine.result import Result
-    from texlab_core.engine.steps import FloatImage
     from texlab_core.methods.heeger_bergen.contributions import Contributions
     from texlab_core.stats.pyramid_kinds import PyramidKind
     from texlab_core.transforms.steerable import BandKey
@@ -88,13 +86,6 @@ class ExplainedPixel:
 
 
 _built = Recent(CACHE_BYTES, lambda built: built.nbytes)
-
-
-def luma(image: FloatImage) -> NDArray[np.float32]:
-    """Return the luma of an image (H, W, C), (H, W) float32."""
-    if image.shape[2] == 1:
-        return np.ascontiguousarray(image[..., 0])
-    return np.ascontiguousarray(image @ np.array(LUMA, np.float32))
 
 
 def take_apart(result: Result, should_stop: Callable[[], bool] = never) -> Built:

@@ -12,9 +12,10 @@ from texlab.docks.recent import Same
 from texlab.style.colouring import DIVERGING_TABLE, GRAY_TABLE, SEQUENTIAL_TABLE, Scale, lookup_table, paint
 from texlab_core.errors import Cancelled
 from texlab_core.stats.peaks import find_peaks
-from texlab_core.stats.spectrum import gray_plane, power_spectrum
+from texlab_core.stats.spectrum import power_spectrum
 from texlab_core.transforms.gabor import GaborTransform, Response, local_frequency, psnr
 from texlab_core.transforms.gabor_bank import channel_name
+from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -103,11 +104,11 @@ def gabor_pictures(
     def transform(image: FloatImage) -> GaborTransform:
         if should_stop():
             raise Cancelled
-        return recent.get(Same(image), lambda: GaborTransform(gray_plane(image)))
+        return recent.get(Same(image), lambda: GaborTransform(luma(image)))
 
     if request.view == "local":
         pair = request.pair or strongest(exemplar)
-        return GaborAnswer(replace(request, pair=pair), _local(gray_plane(exemplar), pair))
+        return GaborAnswer(replace(request, pair=pair), _local(luma(exemplar), pair))
     images = (("exemplar", exemplar),) if result is None else (("exemplar", exemplar), ("result", result))
     transforms = [(name, transform(image)) for name, image in images]
     if request.view == "sum":

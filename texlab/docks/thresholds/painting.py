@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPen, QPolygonF
 
 from texlab.docks.thresholds.table import SoftLog
-from texlab.style.colouring import SEQUENTIAL_TABLE, paint
+from texlab.style.colouring import SEQUENTIAL_TABLE, ink_on, paint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,9 +32,7 @@ def colours(values: NDArray[np.float64]) -> NDArray[np.uint8]:
 @lru_cache(maxsize=1024)
 def cell_colours(red: int, green: int, blue: int) -> tuple[QColor, QColor]:
     """Return the colour of a cell and of what is written on it."""
-    # Black on light cells, white on dark ones (luma of BT.601).
-    light = 0.299 * red + 0.587 * green + 0.114 * blue > 140
-    return QColor(red, green, blue), QColor("#000000" if light else "#ffffff")
+    return QColor(red, green, blue), QColor(ink_on(red, green, blue))
 
 
 def draw_glyph(painter: QPainter, feature: Feature, area: QRectF, colour: QColor) -> None:

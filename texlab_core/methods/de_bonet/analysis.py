@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from texlab_core.methods.de_bonet.features import FeatureKind, FilterSet, feature_list
 from texlab_core.methods.de_bonet.quadtree import Grid
+from texlab_core.transforms.fourier import periodic_component
+from texlab_core.transforms.luma import luma
 from texlab_core.work.tasks import through
 
 if TYPE_CHECKING:
@@ -170,7 +172,7 @@ def analyze_steps(
         done += 2 * grid.count(i)
         measured = np.empty((len(features) if i else 0, *grid.shape(i)), np.float32)
         if i > 0:
-            seen = (_luminance(gaussian), _luminance(band)) if luminance_only else (gaussian, band)
+            seen = (luma(gaussian)[..., None], luma(band)[..., None]) if luminance_only else (gaussian, band)
             filling = _measure(seen[0], seen[1], measured, kinds, orientations, filter_size, rule)
             yield from through(filling, (done, total))
         levels.append((yield from through(_finish(grid, i, band, measured, normalization), (done, total))))
@@ -178,35 +180,6 @@ def analyze_steps(
         gaussian = coarser
         yield done, total
     return Analysis(grid, tuple(levels), features, rule, origin, notes)
-
-
-def periodic_component(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the image less the smooth component that explains the jumps between opposite borders.
-
-    Parameters
-    ----------
-    pixels
-        (H, W, C) float32.
-
-    Reference: L. Moisan, "Periodic plus smooth image decomposition", 2011, section 2.
-    """
-    from scipy import fft
-
-    height, width, _ = pixels.shape
-    jumps = np.zeros(pixels.shape, np.float64)
-    jumps[0] += pixels[0].astype(np.float64) - pixels[-1]
-    jumps[-1] -= pixels[0].astype(np.float64) - pixels[-1]
-    jumps[:, 0] += pixels[:, 0].astype(np.float64) - pixels[:, -1]
-    jumps[:, -1] -= pixels[:, 0].astype(np.float64) - pixels[:, -1]
-    # The smooth component has the jumps for its discrete Laplacian.
-    rows = 2 * np.cos(2 * np.pi * np.arange(height) / height)[:, None, None]
-    columns = 2 * np.cos(2 * np.pi * np.arange(width // 2 + 1) / width)[None, :, None]
-    eigenvalues = 4 - rows - columns
-    eigenvalues[0, 0] = 1
-    spectrum = fft.rfft2(jumps, axes=(0, 1)) / eigenvalues
-    spectrum[0, 0] = 0
-    smooth = fft.irfft2(spectrum, s=(height, width), axes=(0, 1))
-    return np.ascontiguousarray(pixels - smooth, dtype=np.float32)
 
 
 def row_blocks(height: int, width: int) -> Iterator[tuple[int, int]]:
@@ -248,13 +221,6 @@ def _split(
         band[first:last] -= expanded[first:last]
         yield
     return coarser, band
-
-
-def _luminance(image: NDArray[Any]) -> NDArray[Any]:
-    if image.shape[2] == 1:
-        return image
-    weights = np.array([0.299, 0.587, 0.114], image.dtype)
-    return np.ascontiguousarray((image @ weights)[..., None])
 
 
 def _measure(

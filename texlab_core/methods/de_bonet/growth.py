@@ -11,7 +11,7 @@ from texlab_core.errors import InputError
 from texlab_core.methods.de_bonet.analysis import choose_depth, row_blocks
 from texlab_core.methods.de_bonet.collapse import coarsest, collapse_steps, enlarge
 from texlab_core.methods.de_bonet.quadtree import Grid
-from texlab_core.work.tasks import through
+from texlab_core.work.tasks import relay, through
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Sequence
@@ -60,13 +60,7 @@ def analyze_in_steps(
     steps: Generator[tuple[int, int], None, Analysis], stage: str
 ) -> Generator[Step, None, Analysis]:
     """Turn the progress of an analysis into steps."""
-    while True:
-        try:
-            done, total = next(steps)
-        except StopIteration as end:
-            analysis: Analysis = end.value
-            return analysis
-        yield Step(done, total, stage)
+    return relay(steps, lambda part: Step(*part, stage))
 
 
 def total_work(grid: Grid, after: int = 0) -> int:

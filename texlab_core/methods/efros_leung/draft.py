@@ -10,8 +10,9 @@ import numpy as np
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.streams import Streams
 from texlab_core.methods.efros_leung.candidates import make_pool, to_bytes
-from texlab_core.methods.efros_leung.fill import allowed_centres, at_once, begin, check_inputs, make_growth
+from texlab_core.methods.efros_leung.fill import allowed_centres, begin, check_inputs, make_growth
 from texlab_core.methods.efros_leung.windows import offsets
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Inputs
@@ -59,7 +60,7 @@ def draft(
         size = _smaller(size, matching, exemplar.channels)
     pool = make_pool(to_bytes(exemplar.pixels), allowed_centres(inputs, matching), matching)
     streams = Streams(seed)
-    beginning = at_once(begin(inputs, matching, size, streams, seed_patch=seed_patch, anchor=anchor))
+    beginning = finish(begin(inputs, matching, size, streams, seed_patch=seed_patch, anchor=anchor))
     growth = make_growth(beginning, pool, matching, streams, b"draft", guesses=GUESSES)
     for _ in growth.run():
         if time.perf_counter() > deadline:

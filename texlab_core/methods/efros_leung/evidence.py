@@ -9,6 +9,7 @@ import numpy as np
 
 from texlab_core.engine.steps import Curve, Map, Output, Step
 from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps
+from texlab_core.work.tasks import through
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -65,8 +66,8 @@ def report(
     # Only what was filled counts as copied: what was given is no work of the method.
     copied = np.where(order[..., None] > 0, source, np.int32(-1))
     yield step
-    labels, sizes = yield from _through(copied_regions_steps(copied), step)
-    continuity = yield from _through(continuous_share_steps(copied), step)
+    labels, sizes = yield from through(copied_regions_steps(copied), step)
+    continuity = yield from through(continuous_share_steps(copied), step)
     unit = UNITS[grown.matching.criterion]
     return Output(
         image=image,
@@ -82,16 +83,6 @@ def report(
         notes=_notes(grown),
         details=grown,
     )
-
-
-def _through(steps: Generator[float, None, _T], step: Step) -> Generator[Step, None, _T]:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            found: _T = end.value
-            return found
-        yield step
 
 
 class _Tally:

@@ -12,6 +12,7 @@ from texlab_core.engine.inputs import ArraysInput, ImageInput, Inputs, exemplar_
 from texlab_core.errors import InputError, ParamError
 from texlab_core.methods.efros_leung.candidates import may_be_copied, to_bytes, whole_windows
 from texlab_core.methods.efros_leung.growth import Growth, empty_canvas
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
@@ -221,16 +222,6 @@ def begin(
     return _from_seed(inputs, matching, size, streams("seed patch"), seed_patch)
 
 
-def at_once(beginning: Generator[None, None, Beginning]) -> Beginning:
-    """Run :func:`begin` to its end."""
-    while True:
-        try:
-            next(beginning)
-        except StopIteration as end:
-            found: Beginning = end.value
-            return found
-
-
 def settings_digest(inputs: Inputs, matching: Matching, size: tuple[int, int], streams: Streams) -> bytes:
     """Identify everything that the way of growing depends on, the beginning apart."""
     hashes = [
@@ -276,7 +267,7 @@ def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Ge
     canvas = empty_canvas(channels, size)
     place = _placed((height, width), size, anchor)
     given = np.zeros((*size, channels), np.float32) if arrays["given"].size else None
-    for rows in _row_blocks(height, width):
+    for rows in row_blocks((height, width), _PIXELS_AT_ONCE):
         for name, target in canvas._asdict().items():
             target[..., *place][..., rows, :] = arrays[name][..., rows, :]
         if given is not None:
@@ -317,7 +308,7 @@ def _from_image(inputs: Inputs, size: tuple[int, int], anchor: Anchor) -> Genera
     # Every given pixel of the exemplar is its own source; others are kept as they are.
     own = image.sha256 == exemplar.sha256
     given = None if own else np.zeros((*size, exemplar.channels), np.float32)
-    for rows in _row_blocks(height, width):
+    for rows in row_blocks((height, width), _PIXELS_AT_ONCE):
         pixels = np.broadcast_to(image.pixels[rows], (rows.stop - rows.start, width, exemplar.channels))
         known = np.ones(pixels.shape[:2], bool)
         if mask is not None:
@@ -370,11 +361,6 @@ def _placed(inner: tuple[int, int], outer: tuple[int, int], anchor: Anchor) -> t
     top = 0 if "top" in anchor else free[0] if "bottom" in anchor else free[0] // 2
     left = 0 if "left" in anchor else free[1] if "right" in anchor else free[1] // 2
     return slice(top, top + inner[0]), slice(left, left + inner[1])
-
-
-def _row_blocks(height: int, width: int) -> list[slice]:
-    rows = max(1, _PIXELS_AT_ONCE // width)
-    return [slice(first, min(first + rows, height)) for first in range(0, height, rows)]
 
 
 def _image(inputs: Inputs, name: str) -> ImageInput | None:

@@ -11,6 +11,7 @@ import numpy as np
 from texlab_core.engine.steps import FloatImage, Step
 from texlab_core.methods.efros_leung.order import first_layer, following_layer, raster_rows
 from texlab_core.methods.efros_leung.windows import make_window
+from texlab_core.work.tasks import now_and_then
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
@@ -156,27 +157,13 @@ class Growth:
                     if self.started
                     else first_layer(status, self.window, self.matching.wraps, self.order_key)
                 )
-                queue = yield from self._watched(finding)
+                queue = yield from now_and_then(finding, PORTION_S, self.step)
                 self.queue, self.started = queue, True
                 self.search.numbers[POSITION] = 0
                 self.filled_before_layer = self._filled()
                 if len(queue) == 0:
                     return False
         return True
-
-    def _watched(
-        self, finding: Generator[None, None, NDArray[np.int32]]
-    ) -> Generator[Step, None, NDArray[np.int32]]:
-        begin = time.perf_counter()
-        try:
-            while True:
-                next(finding)
-                if time.perf_counter() - begin > PORTION_S:
-                    yield self.step()
-                    begin = time.perf_counter()
-        except StopIteration as end:
-            layer: NDArray[np.int32] = end.value
-            return layer
 
     def _raise_limit(self) -> None:
         """After a whole layer without a pixel, raise the limit until its best pixel passes (textbook: by 1.1)."""

@@ -11,6 +11,7 @@ from texlab_core.engine.registry import EXEMPLAR, InputSpec, Method, register
 from texlab_core.engine.steps import Step
 from texlab_core.methods.efros_leung.fill import Anchor
 from texlab_core.methods.efros_leung.windows import Border, Criterion, Matching, Shape
+from texlab_core.work.tasks import relay, through
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -198,12 +199,8 @@ def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None
     allowed = allowed_centres(inputs, matching)
     pool = make_pool(values, allowed, matching)
     measuring = leave_one_out(values, allowed, pool, matching)
-    while True:
-        try:
-            done, total = next(measuring)
-        except StopIteration as end:
-            return EfrosLeungModel(pool, end.value)
-        yield Step(done, total, "matching the exemplar with itself")
+    levels = yield from relay(measuring, lambda part: Step(*part, "matching the exemplar with itself"))
+    return EfrosLeungModel(pool, levels)
 
 
 def synthesize(
@@ -217,13 +214,7 @@ def synthesize(
     matching = params.matching()
     exemplar = exemplar_of(inputs)
     laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
-    while True:
-        try:
-            next(laying)
-        except StopIteration as end:
-            beginning = end.value
-            break
-        yield Step(0, size[0] * size[1], "laying out what is known")
+    beginning = yield from through(laying, Step(0, size[0] * size[1], "laying out what is known"))
     settings = settings_digest(inputs, matching, size, streams)
     growth = make_growth(beginning, model.pool, matching, streams, settings)
 

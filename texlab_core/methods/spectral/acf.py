@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.spectral.fourier import Floats, Half, Plane, blocks, column_weights, forward
+from texlab_core.methods.spectral.fourier import Floats, Half, Plane, column_weights, forward
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -48,7 +49,7 @@ def measure(plane: Plane, progress: Progress, transform: str, stage: str) -> Gen
     half = yield from forward(plane - np.float32(mean), progress, transform)
     along_v, along_u = _waves(height), _waves(width)[: width // 2 + 1] * column_weights(width)[:, None]
     values = np.zeros((2 * REACH + 1, 2 * REACH + 1))
-    for rows in blocks(height, half.shape[1], 2**17):
+    for rows in row_blocks((height, half.shape[1]), 2**17):
         part = half[rows].astype(np.complex128)
         power = np.square(part.real) + np.square(part.imag)
         for column, wave in enumerate(along_u.T):
@@ -81,7 +82,7 @@ def shape_noise(
     """
     weights = column_weights(size[1])
     negative = total = 0.0
-    for rows in blocks(half.shape[0], half.shape[1], 2**17):
+    for rows in row_blocks((half.shape[0], half.shape[1]), 2**17):
         power = spectrum(acf, size, rows)
         negative -= float((np.minimum(power, 0) @ weights).sum())
         total += float((np.abs(power) @ weights).sum())

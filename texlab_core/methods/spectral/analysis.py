@@ -13,7 +13,7 @@ import numpy as np
 
 from texlab_core.methods.spectral.code import MsgCode, Residual, channels
 from texlab_core.methods.spectral.digits import keep_digits
-from texlab_core.methods.spectral.fourier import Floats, Half, Plane, blocks, forward, self_conjugate_columns
+from texlab_core.methods.spectral.fourier import Floats, Half, Plane, forward, self_conjugate_columns
 from texlab_core.transforms.gabor_bank import (
     CHANNELS,
     MIRRORED_U,
@@ -25,6 +25,7 @@ from texlab_core.transforms.gabor_bank import (
     mirrored,
     residual_reach,
 )
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -114,7 +115,7 @@ def channel_marginals(half: Half, width: int, progress: Progress, stage: str) ->
     # The columns that are their own mirror images count once.
     inner_u[:, list(self_conjugate_columns(width))] = 0
     along_u, along_v = np.zeros_like(half_u), np.empty((len(half_u), height))
-    for rows in blocks(height, columns, 2**18):
+    for rows in row_blocks((height, columns), 2**18):
         gabor.marginals(
             half[rows], rows.start, profiles_v, inner_u, ends_v, np.minimum(ends_u, columns), along_u, along_v
         )

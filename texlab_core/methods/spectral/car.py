@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.spectral.fourier import Floats, Half, Plane, blocks, inverse
+from texlab_core.methods.spectral.fourier import Floats, Half, Plane, inverse
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -79,7 +80,7 @@ def fit(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, C
     height, width = values.shape[0] - REACH, values.shape[1] - 2 * REACH
     products = np.zeros((COEFFICIENTS + 1, COEFFICIENTS + 1))
     offsets = np.array([(0, 0), *OFFSETS])
-    for rows in blocks(height, width, 2**12):
+    for rows in row_blocks((height, width), 2**12):
         gabor.covariances(values[rows.start : rows.stop + REACH], offsets, products)
         yield progress.at(stage, rows.stop / height)
     products = np.triu(products) + np.triu(products, 1).T
@@ -110,7 +111,7 @@ def shape_noise(
 ) -> Generator[Step, None, None]:
     """Multiply a unit-modulus half plane by the model's magnitude spectrum, in place."""
     gain = model.noise * np.sqrt(size[0] * size[1])
-    for rows in blocks(half.shape[0], half.shape[1], 2**17):
+    for rows in row_blocks((half.shape[0], half.shape[1]), 2**17):
         modulus = np.abs(transfer(model, size, rows))
         half[rows] *= (gain / np.maximum(modulus, 1e-9)).astype(np.float32)
         yield progress.at(stage, rows.stop / half.shape[0])
@@ -139,7 +140,7 @@ def recurse(
     grid = model.grid()
     limit = _LIMIT * max(model.deviation, 1e-6)
     limited = 0
-    for rows in blocks(_WARM + height, width + _WARM, 2**16):
+    for rows in row_blocks((_WARM + height, width + _WARM), 2**16):
         limited += int(car.recurse(noise, grid, field, rows.start, rows.stop, _WARM, limit))
         yield progress.at(stage)
     plane = (field[_WARM:, REACH : REACH + width] + model.mean).astype(np.float32)

@@ -9,13 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-import scipy  # scipy.fft is loaded on its first use
 from numpy.typing import NDArray
 
-from texlab_core.work.threads import workers
+from texlab_core.transforms.fourier import irfft2, rfft2
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Generator
 
     from texlab_core.engine.progress import Progress
     from texlab_core.engine.steps import Step
@@ -25,59 +25,28 @@ Plane: TypeAlias = NDArray[np.float32]
 Half: TypeAlias = NDArray[np.complex64]
 Floats: TypeAlias = NDArray[np.float64]
 
-# A block of this many values takes about 10 ms in a transform, less elsewhere.
-_BLOCK = 2**20
-# Below this, starting threads costs more than it saves.
-_THREADED = 2**18
-
-
-def blocks(count: int, width: int, size: int = _BLOCK) -> Iterator[slice]:
-    """Yield slices over ``count`` rows of ``width`` values, about ``size`` values each."""
-    rows = max(1, size // max(1, width))
-    for start in range(0, count, rows):
-        yield slice(start, min(start + rows, count))
+# Values in a block that takes a few milliseconds; the last bits of sums and of large transforms depend on it.
+BLOCK = 2**20
 
 
 def forward(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, Half]:
-    """Return ``rfft2(plane)``, yielding between blocks of rows and columns.
+    """Return ``rfft2(plane)``, not scaled, yielding between blocks of rows and columns.
 
     Parameters
     ----------
     plane
         (H, W) float32 (or float64, then the result is complex128).
     """
-    threads = workers() if plane.size >= _THREADED else 1
-    if plane.size <= _BLOCK:
-        half: Half = scipy.fft.rfft2(plane, workers=threads)
-        yield progress.at(stage)
-        return half
-    height, width = plane.shape
-    half = np.empty((height, width // 2 + 1), np.result_type(plane, np.complex64))
-    for rows in blocks(height, width):
-        half[rows] = scipy.fft.rfft(plane[rows], axis=1, workers=threads)
-        yield progress.at(stage, 0.5 * rows.stop / height)
-    for columns in blocks(half.shape[1], height, _BLOCK // 2):
-        half[:, columns] = scipy.fft.fft(half[:, columns], axis=0, workers=threads)
-        yield progress.at(stage, 0.5 + 0.5 * columns.stop / half.shape[1])
-    return half
+    work = plane.size + plane.shape[0] * (plane.shape[1] // 2 + 1) if plane.size > BLOCK else plane.size
+    return progress.count(rfft2(plane, "backward", BLOCK), stage, work)
 
 
 def inverse(half: Half, size: tuple[int, int], progress: Progress, stage: str) -> Generator[Step, None, Plane]:
-    """Return ``irfft2(half, size)``, yielding between blocks; large half planes are overwritten."""
-    height, width = size
-    threads = workers() if height * width >= _THREADED else 1
-    if height * width <= _BLOCK:
-        plane: Plane = scipy.fft.irfft2(half, s=size, workers=threads, overwrite_x=True)
-        yield progress.at(stage)
-        return plane
-    for columns in blocks(half.shape[1], height, _BLOCK // 2):
-        half[:, columns] = scipy.fft.ifft(half[:, columns], axis=0, workers=threads)
-        yield progress.at(stage, 0.5 * columns.stop / half.shape[1])
-    plane = np.empty(size, half.real.dtype)
-    for rows in blocks(height, width):
-        plane[rows] = scipy.fft.irfft(half[rows], width, axis=1, workers=threads)
-        yield progress.at(stage, 0.5 + 0.5 * rows.stop / height)
-    return plane
+    """Return ``irfft2(half, size)``, yielding between blocks; the half plane is overwritten."""
+    samples = size[0] * size[1]
+    return progress.count(
+        irfft2(half, size, "backward", BLOCK), stage, samples + half.size if samples > BLOCK else samples
+    )
 
 
 def random_phase(
@@ -110,7 +79,7 @@ def draw_phase(size: tuple[int, int], generator: np.random.Generator) -> Generat
     height, width = size
     columns = width // 2 + 1
     phase = np.empty((height, columns), np.complex64)
-    for rows in blocks(height, columns):
+    for rows in row_blocks((height, columns), BLOCK):
         angle = generator.random((rows.stop - rows.start, columns), dtype=np.float32)
         angle *= np.float32(2 * np.pi)
         np.cos(angle, out=phase[rows].real)
@@ -147,7 +116,7 @@ def mean_square(half: Half, width: int) -> float:
     """Return the mean square of the image whose ``rfft2`` is given (Parseval)."""
     total = 0.0
     weights = column_weights(width)
-    for rows in blocks(half.shape[0], half.shape[1]):
+    for rows in row_blocks(half.shape, BLOCK):
         part = half[rows]
         total += float(np.sum((part.real**2 + part.imag**2) @ weights, dtype=np.float64))
     return total / float(half.shape[0] * width) ** 2

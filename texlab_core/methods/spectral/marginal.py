@@ -12,7 +12,8 @@ import numpy as np
 
 from texlab_core.methods.spectral.choices import HistogramKind
 from texlab_core.methods.spectral.digits import keep_digits
-from texlab_core.methods.spectral.fourier import Floats, Plane, blocks
+from texlab_core.methods.spectral.fourier import BLOCK, Floats, Plane
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -62,7 +63,7 @@ class Histogram16:
 def histogram256(plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, Floats]:
     """Return the masses of the gray levels 0 .. 255 (nearest level; the plane is in gray levels)."""
     counts = np.zeros(256, np.int64)
-    for rows in blocks(*plane.shape):
+    for rows in row_blocks(plane.shape, BLOCK):
         levels = np.rint(plane[rows]).astype(np.uint8)
         counts += np.bincount(levels.reshape(-1), minlength=256)
         yield progress.at(stage)
@@ -136,7 +137,7 @@ def rank_index(
     scale = np.float32((_TABLE - 1) / (high - low)) if high > low else np.float32(0)
     index = np.empty(plane.shape, np.uint16)
     counts = np.zeros(_TABLE, np.int64)
-    for rows in blocks(*plane.shape):
+    for rows in row_blocks(plane.shape, BLOCK):
         index[rows] = (plane[rows] - np.float32(low)) * scale
         counts += np.bincount(index[rows].reshape(-1), minlength=_TABLE)
         yield progress.at(stage, 0.5 * rows.stop / plane.shape[0])

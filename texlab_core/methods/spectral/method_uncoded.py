@@ -55,9 +55,10 @@ def synthesize(
     model: Spot, inputs: Inputs, params: UncodedParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Give the exemplar's spectrum a random phase, then its histograms."""
-    from texlab_core.methods.spectral.fourier import blocks, inverse, random_phase
+    from texlab_core.methods.spectral.fourier import BLOCK, inverse, random_phase
     from texlab_core.methods.spectral.uncoded import give_phase, parameter_count, spectra
     from texlab_core.stats import histogram
+    from texlab_core.work.tasks import row_blocks
 
     channels = range(len(model.planes))
     weights: dict[str, float] = {"phase": 1.0}
@@ -83,7 +84,7 @@ def synthesize(
         yield progress.at(stage, 0.3)
         for _ in histogram.match_ranks_in_place(plane, target, streams.key("ties", channel)):
             yield progress.at(stage, 0.6)
-        for rows in blocks(height, width):
+        for rows in row_blocks((height, width), BLOCK):
             image[rows, :, channel] = plane[rows]
             yield progress.at(stage, 0.6 + 0.4 * rows.stop / height)
     return Output(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from texlab_core.methods.spectral.fourier import Floats, Half, Plane, blocks, draw_phase, inverse, random_phase
+from texlab_core.methods.spectral.fourier import Floats, Half, Plane, draw_phase, inverse, random_phase
 from texlab_core.transforms.gabor_bank import (
     CENTRES_U,
     CENTRES_V,
@@ -23,9 +23,10 @@ from texlab_core.transforms.gabor_bank import (
     power_profile,
     residual_reach,
 )
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Generator
 
     from numpy.typing import NDArray
 
@@ -301,5 +302,5 @@ def _write_residual(half: Half, residual: Residual, size: Size) -> None:
     half[0, 0] = residual.mean * height * width
 
 
-def _rows(half: Half) -> Iterator[slice]:
-    return blocks(half.shape[0], half.shape[1], 2**18)
+def _rows(half: Half) -> list[slice]:
+    return row_blocks((half.shape[0], half.shape[1]), 2**18)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from texlab_core.methods.spectral.digits import keep_digits
-from texlab_core.methods.spectral.fourier import Floats, Plane, blocks
+from texlab_core.methods.spectral.fourier import BLOCK, Floats, Plane
 from texlab_core.methods.spectral.marginal import (
     SAMPLES,
     Histogram16,
@@ -21,9 +21,10 @@ from texlab_core.methods.spectral.marginal import (
     quantiles,
     rank_index,
 )
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Generator
 
     from texlab_core.engine.progress import Progress
     from texlab_core.engine.steps import FloatImage, Step
@@ -119,7 +120,7 @@ class Tone:
         table = gray[:, None] if self.colours is None else self.colours.at(gray, ranked.ranks)
         table = np.clip(table / 255, 0, 1).astype(np.float32)
         image = np.empty((*plane.shape, table.shape[1]), np.float32)
-        for rows in blocks(plane.shape[0], plane.shape[1] * 4):
+        for rows in row_blocks((plane.shape[0], plane.shape[1] * 4), BLOCK):
             np.take(table, ranked.index[rows], axis=0, out=image[rows], mode="clip")
             yield progress.at(stage, 0.5 + 0.5 * rows.stop / plane.shape[0])
         return image
@@ -225,8 +226,8 @@ def _curves(
     return keep_digits(second), keep_digits(third)
 
 
-def _pixel_blocks(pixels: FloatImage) -> Iterator[slice]:
-    return blocks(pixels.shape[0], pixels.shape[1], 2**17)
+def _pixel_blocks(pixels: FloatImage) -> list[slice]:
+    return row_blocks((pixels.shape[0], pixels.shape[1]), 2**17)
 
 
 def _vector(values: Floats) -> Vector:

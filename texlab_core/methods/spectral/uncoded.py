@@ -11,15 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.methods.spectral.fourier import (
+    BLOCK,
     Floats,
     Half,
     Plane,
-    blocks,
     forward,
     inverse,
     mean_square,
     self_conjugate_columns,
 )
+from texlab_core.transforms.fourier import smooth_spectrum
+from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -56,7 +58,7 @@ def make_spot(pixels: FloatImage, periodic: bool, progress: Progress, stage: str
     planes, mean = np.empty((channels, height, width), np.float32), np.zeros(channels)
     for channel, plane in enumerate(planes):
         name = f"{stage} {channel + 1}"
-        for rows in blocks(height, width):
+        for rows in row_blocks((height, width), BLOCK):
             plane[rows] = pixels[rows, :, channel]
             mean[channel] += plane[rows].sum(dtype=np.float64) / plane.size
             yield progress.at(name, 0.0)
@@ -71,23 +73,9 @@ def make_spot(pixels: FloatImage, periodic: bool, progress: Progress, stage: str
 
 
 def subtract_smooth(half: Half, plane: Plane, progress: Progress, stage: str) -> Generator[Step, None, None]:
-    """Subtract from the spectrum of a plane that of its smooth component, in place.
-
-    The jumps between opposite borders live on two lines: their spectrum takes one-dimensional transforms only.
-    """
-    height, width = plane.shape
-    across = np.fft.rfft(plane[-1].astype(np.float64) - plane[0])
-    down = np.fft.fft(plane[:, -1].astype(np.float64) - plane[:, 0])
-    v, u = np.fft.fftfreq(height), np.arange(width // 2 + 1) / width
-    step_v, step_u = 1 - np.exp(2j * np.pi * v), 1 - np.exp(2j * np.pi * u)
-    for rows in blocks(height, u.size, 2**17):
-        laplacian = 2 * np.cos(2 * np.pi * v[rows])[:, None] + 2 * np.cos(2 * np.pi * u) - 4
-        if rows.start == 0:
-            laplacian[0, 0] = 1
-        jumps = step_v[rows, None] * across + down[rows, None] * step_u
-        if rows.start == 0:
-            jumps[0, 0] = 0
-        half[rows] -= (jumps / laplacian).astype(half.dtype)
+    """Subtract from the spectrum of a plane that of its smooth component, in place."""
+    for rows, smooth in smooth_spectrum(plane):
+        half[rows] -= smooth.astype(half.dtype)
         yield progress.at(stage)
 
 
@@ -148,7 +136,7 @@ def give_phase(halves: list[Half], phase: Half, progress: Progress, stage: str) 
 
     Reference: Galerne, Gousseau & Morel 2011, section 2.3: the channels keep their phase differences.
     """
-    for rows in blocks(phase.shape[0], phase.shape[1], 2**18):
+    for rows in row_blocks((phase.shape[0], phase.shape[1]), 2**18):
         total = sum((half[rows] for half in halves[1:]), halves[0][rows])
         length = np.abs(total)
         turn = phase[rows] * np.where(length > 0, np.conj(total) / np.where(length > 0, length, 1), 1)
