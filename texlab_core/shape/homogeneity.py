@@ -94,7 +94,8 @@ def uniformity(points: Floats, orientation: Orientation, *, at_border: bool = Fa
     corners = (np.arange(number + 1) - half) * side
     y, x = np.meshgrid(corners, corners, indexing="ij")
     seen = np.stack([x, y], axis=-1) @ turn.T @ orientation.foreshortening()
-    within = (np.abs(seen) <= 0.5 + 1e-12).all(axis=-1)
+    # A corner on the border counts as outside for cells that reach beyond, as inside for those that do not.
+    within = (np.abs(seen) <= 0.5 + (-1e-9 if at_border else 1e-9)).all(axis=-1)
     parts = np.stack([within[:-1, :-1], within[1:, :-1], within[:-1, 1:], within[1:, 1:]])
     used = (parts.any(axis=0) if at_border else parts.all(axis=0)).reshape(-1)
     chosen = counts[used]

@@ -84,6 +84,18 @@ def filter_bank(size: tuple[int, int]) -> Plane:
     return np.roll(bank, (height // 2, width // 2), axis=(0, 1)).astype(np.float32)
 
 
+def channel_gain(channel: int, size: tuple[int, int]) -> NDArray[np.float64]:
+    """Return the gain of channel 4 p + q at each frequency, both lobes, (H, W) float64 in FFT order."""
+    gain_v, gain_u = (each[channel] for each in _profiles(size))
+    gain: NDArray[np.float64] = np.outer(gain_v, gain_u) + np.outer(mirrored(gain_v), mirrored(gain_u))
+    return gain
+
+
+def residual_gain(size: tuple[int, int]) -> NDArray[np.float64]:
+    """Return the gain of the low-pass residual at each frequency, (H, W) float64 in FFT order."""
+    return np.asarray(np.outer(*_residual_profiles(size)), np.float64)
+
+
 @dataclass(frozen=True, eq=False)
 class Response:
     """What a pair of Gabor filters in quadrature answers, in the units of the image.

@@ -1,7 +1,8 @@
 """A bank of spots and bars: eight weighted sums of Gaussians, which answer where an image looks like one of them.
 
 Each Gaussian is sampled and sums to 1 and the weights of each filter sum to 0, so that a constant image gives
-nothing. Coarser spots and bars are found by filtering reductions of the image.
+nothing. Coarser spots and bars are found by filtering reductions of the image (:func:`responses`), or with wider
+kernels (:func:`scaled_kernels`), which show the same image at several scales side by side.
 
 Reference: Forsyth and Ponce, section 11.1.1, Figs. 11.3 to 11.5; Malik and Perona 1990.
 """
@@ -14,8 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.errors import ParamError
+from texlab_core.tasks import go_on
+from texlab_core.threads import workers
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -28,6 +33,8 @@ BARS = 6
 FILTERS = len(SPOTS) + BARS
 # Three standard deviations of the longest Gaussian, and its offset.
 REACH = 7
+# Below 1 the samples no longer tell a bar's Gaussians apart; above 16 a kernel is larger than most textures.
+SCALES = (1.0, 16.0)
 
 
 @functools.cache
@@ -37,7 +44,49 @@ def kernels() -> NDArray[np.float64]:
     Across bar k the gray level changes along the angle k · 30°, counted from the columns' axis towards the rows'
     (bar 0 is vertical, bar 3 horizontal).
     """
-    y, x = np.mgrid[-REACH : REACH + 1, -REACH : REACH + 1].astype(np.float64)
+    bank = _sampled(1.0)
+    bank.flags.writeable = False
+    return bank
+
+
+@functools.lru_cache(maxsize=16)
+def scaled_kernels(scale: float) -> NDArray[np.float64]:
+    """Return the filters with all lengths times a scale, (8, n, n) float64, n odd, read-only.
+
+    Each is scaled to a sum of absolute values of 2: the responses to an image in [0, 1] lie between -1 and 1, and
+    those of different filters can be compared.
+
+    Parameters
+    ----------
+    scale
+        1 to 16; 1 has the sigmas of the text (Fig. 11.4), 2 to 4 show what it shows as the coarser scale (11.5).
+
+    Raises
+    ------
+    ParamError
+        When the scale is out of range.
+    """
+    low, high = SCALES
+    if not low <= scale <= high:
+        raise ParamError("scale", f"a number from {low:g} to {high:g}", scale)
+    bank = _sampled(scale)
+    # What is left of the sum by rounding would answer to a constant.
+    bank -= bank.mean(axis=(1, 2), keepdims=True)
+    bank *= 2 / np.abs(bank).sum(axis=(1, 2), keepdims=True)
+    bank.flags.writeable = False
+    return bank
+
+
+def filter_name(number: int) -> str:
+    """Return a filter's name: two spots, then six bars by the angle across them."""
+    if number < len(SPOTS):
+        return f"spot of {len(SPOTS[number])} Gaussians"
+    return f"bar, waves along {180 * (number - len(SPOTS)) // BARS}°"
+
+
+def _sampled(scale: float) -> NDArray[np.float64]:
+    reach = math.ceil(REACH * scale)
+    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1] / scale
     bank = np.zeros((FILTERS, *x.shape))
     for kernel, spot in zip(bank, SPOTS, strict=False):
         for weight, sigma in spot:
@@ -47,7 +96,6 @@ def kernels() -> NDArray[np.float64]:
         across, along = x * math.cos(angle) + y * math.sin(angle), y * math.cos(angle) - x * math.sin(angle)
         for weight, shift in BAR:
             bank[len(SPOTS) + k] += weight * _gaussian((across - shift) / BAR_ACROSS, along / BAR_ALONG)
-    bank.flags.writeable = False
     return bank
 
 
@@ -64,3 +112,74 @@ def responses(plane: NDArray[np.float32]) -> Iterator[NDArray[np.float32]]:
     for kernel in kernels():
         found = cv2.filter2D(plane, cv2.CV_32F, kernel, borderType=cv2.BORDER_REFLECT_101)
         yield np.asarray(found, np.float32)
+
+
+def scaled_responses(
+    plane: NDArray[np.float32], scale: float, look: Callable[[], None] = go_on
+) -> NDArray[np.float32]:
+    """Return what the filters of one scale answer, (8, H, W) float32; the plane is mirrored at its borders.
+
+    Parameters
+    ----------
+    plane
+        (H, W) float32.
+    scale
+        1 to 16; see :func:`scaled_kernels`.
+    look
+        Called between the filters; may raise to stop.
+
+    Reference: Forsyth and Ponce, Figs. 11.4 and 11.5, which show their absolute values.
+    """
+    from scipy import fft
+
+    bank = scaled_kernels(scale)
+    reach = bank.shape[1] // 2
+    height, width = plane.shape
+    padded = _mirrored(plane, reach)
+    size = (fft.next_fast_len(padded.shape[0], real=True), fft.next_fast_len(padded.shape[1], real=True))
+    look()
+    spectrum = fft.rfft2(padded, s=size, workers=workers())
+    found = np.empty((FILTERS, height, width), np.float32)
+    for number, gains in enumerate(_spectra(scale, size)):
+        look()
+        whole = fft.irfft2(spectrum * gains, s=size, overwrite_x=True, workers=workers())
+        found[number] = whole[2 * reach : 2 * reach + height, 2 * reach : 2 * reach + width]
+    return found
+
+
+@functools.lru_cache(maxsize=4)
+def _spectra(scale: float, size: tuple[int, int]) -> NDArray[np.complex64]:
+    from scipy import fft
+
+    # Convolution: the kernels point the same way as the image, as everywhere here (they are symmetric).
+    spectra: NDArray[np.complex64] = fft.rfft2(scaled_kernels(scale).astype(np.float32), s=size)
+    spectra.flags.writeable = False
+    return spectra
+
+
+def _mirrored(plane: NDArray[np.float32], reach: int) -> NDArray[np.float32]:
+    """Mirror about the outermost pixels, as often as a kernel wider than the plane needs."""
+    import cv2
+
+    padded = cv2.copyMakeBorder(plane, reach, reach, reach, reach, cv2.BORDER_REFLECT_101)
+    return np.asarray(padded, np.float32)
+
+
+def strength(responses: NDArray[np.float32]) -> tuple[NDArray[np.float32], float]:
+    """Return absolute responses, and the gray level that shows as white: their common 99.5th percentile."""
+    magnitude: NDArray[np.float32] = np.abs(responses)
+    return magnitude, max(float(np.percentile(magnitude, 99.5)), 1e-9)
+
+
+def footprint(kernel: NDArray[np.floating], size: Sequence[int]) -> NDArray[np.float32]:
+    """Return a kernel's gain at each frequency, (H, W) float32, zero frequency at (H // 2, W // 2).
+
+    Parameters
+    ----------
+    kernel
+        (n, n), real or complex.
+    size
+        Height and width of the frequency plane, n or more.
+    """
+    spectrum = np.abs(np.fft.fft2(kernel, s=(size[0], size[1])))
+    return np.roll(spectrum, (size[0] // 2, size[1] // 2), axis=(0, 1)).astype(np.float32)
