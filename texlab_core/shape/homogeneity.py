@@ -25,7 +25,7 @@ import numpy as np
 from texlab_core.errors import InputError, ParamError
 from texlab_core.shape.orientation import MOST_SLANT, Orientation, of_tensor
 from texlab_core.shape.points import back_projected, check_count
-from texlab_core.tasks import go_on
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -237,7 +237,12 @@ def orientation_of_density(points: Floats) -> DensityFit:
         return float(3 * logs + np.log(area @ (1 + grid @ gradient) ** -3))
 
     simplex = np.array([[0.0, 0.0], [0.3, 0.0], [0.0, 0.3]])
-    options = {"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-9}
-    p, q = (float(each) for each in minimize(unlikely, simplex[0], method="Nelder-Mead", options=options).x)
+    found = minimize(
+        unlikely,
+        simplex[0],
+        method="Nelder-Mead",
+        options={"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-9},
+    )
+    p, q = float(found.x[0]), float(found.x[1])
     slant, tilt = math.degrees(math.atan(math.hypot(p, q))), math.degrees(math.atan2(q, p)) % 360
     return DensityFit(Orientation(slant, tilt), 1 - HALF_SIDE * (abs(p) + abs(q)) < 1.2 * _LEAST_DEPTH)

@@ -23,7 +23,7 @@ import numpy as np
 
 from texlab_core.errors import InputError
 from texlab_core.shape.orientation import MOST_SLANT, Orientation, of_tensor
-from texlab_core.tasks import go_on
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +61,7 @@ class IsotropySpectrum:
 
     @cached_property
     def _angles(self) -> Floats:
-        return (np.arange(_ANGLES) + 0.5) * (np.pi / _ANGLES)
+        return np.asarray((np.arange(_ANGLES) + 0.5) * (np.pi / _ANGLES), np.float64)
 
     @cached_property
     def _banded(self) -> Floats:

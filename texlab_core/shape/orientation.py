@@ -1,8 +1,8 @@
 """The orientation of a textured plane in an orthographic view: slant and tilt.
 
 Image coordinates are (x, y), x along the columns and y down the rows; tilt is counted from x towards y, as the
-angles of waves are everywhere in this program. A plane is seen shortened by cos(slant) along the tilt direction and
-unchanged across it. Tilt and tilt + 180° give the same picture: no orthographic method can tell them apart.
+angles of waves are everywhere in this program. A plane is seen shortened by cos(slant) along the tilt direction
+and unchanged across it. Tilt and tilt + 180° give the same picture: no orthographic method can tell them apart.
 
 Reference: Forsyth and Ponce, section 11.4.1, Fig. 11.24.
 """
@@ -54,7 +54,7 @@ class Orientation:
 
     @classmethod
     def from_disc(cls, x: float, y: float, most: float = MOST_SLANT) -> Orientation:
-        """Return the orientation at a point of the disc slant · (cos 2 tilt, sin 2 tilt), at most ``most`` slanted."""
+        """Return the orientation at a point of the disc slant · (cos 2 tilt, sin 2 tilt)."""
         return cls(min(math.hypot(x, y), most), math.degrees(math.atan2(y, x)) / 2 % 180)
 
     @property
@@ -115,4 +115,6 @@ def of_tensor(tensor: Floats) -> tuple[float, float]:
     low, high = max(float(values[0]), 0.0), float(values[1])
     if high <= 0:
         return 0.0, 0.0
-    return math.degrees(math.acos(math.sqrt(low / high))), math.degrees(math.atan2(vectors[1, 0], vectors[0, 0])) % 180
+    return math.degrees(math.acos(math.sqrt(low / high))), math.degrees(
+        math.atan2(vectors[1, 0], vectors[0, 0])
+    ) % 180

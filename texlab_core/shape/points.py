@@ -55,7 +55,7 @@ def poisson(expected: float, orientation: Orientation, rng: np.random.Generator)
 
 
 def regular(count: int, rng: np.random.Generator, *, jitter: float = 0.2) -> Floats:
-    """Return about ``count`` points that keep apart: a square lattice, each point shaken by ``jitter`` of its step."""
+    """Return about ``count`` points of a square lattice, each shaken by up to ``jitter`` of its step."""
     check_count(count)
     side = max(1, round(math.sqrt(count)))
     lattice = (np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2) + 0.5) / side

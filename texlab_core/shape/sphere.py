@@ -1,8 +1,8 @@
 """A textured sphere, and its shape from local estimates: each window is taken as a plane of isotropic texture.
 
 The sphere is seen orthographically. Its texture is homogeneous on the sphere itself: discs that keep their
-distance on it, or the surface of a solid noise. Estimates are needles whose direction has the 180° ambiguity of the
-tilt; near the middle, where the cosine is flat, they say little.
+distance on it, or the surface of a solid noise. Estimates are needles whose direction has the 180° ambiguity of
+the tilt; near the middle, where the cosine is flat, they say little.
 
 Reference: Forsyth and Ponce, section 11.4.2; Gårding 1992; Malik and Rosenholtz 1997.
 """
@@ -129,7 +129,7 @@ def _noise(places: Floats, radius: float, rng: np.random.Generator) -> Plane:
 
 
 def local_shape(image: Plane, window: float = 24.0) -> LocalShape:
-    """Estimate the orientation around every pixel from second moments of the gradient (isotropy, window by window).
+    """Estimate the orientation around every pixel from second moments of the gradient (isotropy).
 
     Parameters
     ----------

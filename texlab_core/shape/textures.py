@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -77,16 +77,16 @@ def disc_texture(
     from scipy.spatial import cKDTree
 
     places = rng.random((int(_TRIES * (side / distance) ** 2) + 8, 2)) * side
-    tree = cKDTree(places, boxsize=side)
+    tree = cKDTree(places, boxsize=[side, side])
     kept = places[keep_apart(tree.query_ball_point(places, distance))]
     grid = np.arange(side, dtype=np.float64)
     pixels = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
     reach = radius + softness
-    nearest, _ = cKDTree(kept, boxsize=side).query(pixels, distance_upper_bound=reach)
+    nearest, _ = cKDTree(kept, boxsize=[side, side]).query(pixels, distance_upper_bound=reach)
     return soft_disc(np.minimum(nearest, reach).reshape(side, side), radius, softness)
 
 
-def keep_apart(neighbours: NDArray[np.object_]) -> NDArray[np.bool_]:
+def keep_apart(neighbours: Any) -> NDArray[np.bool_]:
     """Return which places are kept when each one that is kept forbids its neighbours, in their order."""
     alive, kept = np.ones(len(neighbours), bool), np.zeros(len(neighbours), bool)
     for place, near in enumerate(neighbours):

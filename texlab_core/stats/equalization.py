@@ -1,8 +1,8 @@
 """Histogram equalization of any two planes: both cumulative histograms, and the way of one value through them.
 
 A value v of image two has the share p of the image at or below it; the new value v' is the smallest one of image
-one with at least that share. Equal values of image two stay equal so, and the histogram of a picture with few values
-cannot become that of another; the text then deals equal values out at random.
+one with at least that share. Equal values of image two stay equal so, and the histogram of a picture with few
+values cannot become that of another; the text then deals equal values out at random.
 
 Reference: Forsyth and Ponce, section 11.3.2, algorithm 11.3, Fig. 11.15.
 """
@@ -127,7 +127,7 @@ def equalization(two: NDArray[Any], one: NDArray[Any]) -> Equalization:
 
 
 def cumulative(sample: Sample) -> tuple[Floats, Floats]:
-    """Return values and shares of a sorted sample's cumulative histogram, at most about 1024 points of a staircase."""
+    """Return values and shares of a sorted sample's cumulative histogram: a staircase of up to 1024 points."""
     values, last = np.unique(sample, return_index=True)
     shares = np.append(last[1:], sample.size) / sample.size
     if values.size > _CURVE_POINTS:
@@ -139,7 +139,9 @@ def cumulative(sample: Sample) -> tuple[Floats, Floats]:
 
 def ramp(side: int = 256) -> Plane:
     """Return the figure's linear ramp, (side / 4, side) float32: gray levels 0 to 1 from left to right."""
-    return np.ascontiguousarray(np.broadcast_to(np.linspace(0, 1, side, dtype=np.float32), (max(1, side // 4), side)))
+    return np.ascontiguousarray(
+        np.broadcast_to(np.linspace(0, 1, side, dtype=np.float32), (max(1, side // 4), side))
+    )
 
 
 def cube_root_ramp(side: int = 256) -> Plane:

@@ -1,8 +1,8 @@
 """Which part of the frequency plane each band of a pyramid keeps: an annulus, or a wedge of it.
 
 The gain of a band is what a wave of the image is multiplied by on its way into the band. Where a level is sampled
-more coarsely than the image, waves beyond its Nyquist frequency appear there as others; the gain counts the wave for
-what it is in the image.
+more coarsely than the image, waves beyond its Nyquist frequency appear there as others; the gain counts the wave
+for what it is in the image.
 
 Reference: Forsyth and Ponce, section 11.2.2, Figs. 11.8, 11.12 and 11.13.
 """
@@ -18,7 +18,7 @@ from texlab_core.stats.bands import band_keys, most_levels, names
 from texlab_core.stats.filter_bands import FILTER_SIDE, GABOR_OCTAVES
 from texlab_core.transforms import filters, gabor, oriented, spots_bars
 from texlab_core.transforms.gaussian import BINOMIAL
-from texlab_core.tasks import finish, go_on
+from texlab_core.work.tasks import finish, go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,7 +97,7 @@ def _gain(kind: PyramidKind, key: BandKey, size: tuple[int, int], levels: int, o
         return _steerable(key, size, levels, orientations)
     if kind in ("gabor", "gabor magnitude"):
         return _gabor(key, size)
-    v, u = np.fft.fftfreq(size[0]), np.fft.fftfreq(size[1])
+    v, u = (np.asarray(np.fft.fftfreq(count), np.float64) for count in size)
     smoothed = np.outer(_reductions(v, key.level), _reductions(u, key.level))
     if key.kind == "lowpass":
         return smoothed
@@ -107,7 +107,9 @@ def _gain(kind: PyramidKind, key: BandKey, size: tuple[int, int], levels: int, o
         passed = np.outer(_binomial(v * fine), _binomial(u * fine)) ** 2
         gain: Floats = smoothed * (1 - passed)
         return gain
-    kernel = _derivative(key.orientation, orientations) if kind == "oriented" else spots_bars.kernels()[key.orientation]
+    kernel = (
+        _derivative(key.orientation, orientations) if kind == "oriented" else spots_bars.kernels()[key.orientation]
+    )
     return smoothed * np.abs(_transfer(kernel, v * fine, u * fine))
 
 

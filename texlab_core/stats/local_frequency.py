@@ -1,7 +1,7 @@
 """Local spatial frequency: which wavelength and orientation prevail around each pixel.
 
-Ten wavelengths from 4 to 48 pixels by twelve orientations of Gabor pairs; their energies are smoothed, and the peak
-over the wavelengths is found between the samples by a parabola.
+Ten wavelengths from 4 to 48 pixels by twelve orientations of Gabor pairs; their energies are smoothed, and the
+peak over the wavelengths is found between the samples by a parabola.
 
 Reference: Forsyth and Ponce, section 11.2.2, Fig. 11.11.
 """
@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.errors import InputError
-from texlab_core.tasks import go_on
-from texlab_core.threads import workers
+from texlab_core.work.tasks import go_on
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable

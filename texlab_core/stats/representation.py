@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import ParamError
-from texlab_core.tasks import go_on
 from texlab_core.transforms import oriented, spots_bars
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,7 +63,9 @@ class Representation:
     @property
     def shares(self) -> tuple[float, ...]:
         """Share of the pixels in each class."""
-        return tuple(float(each) for each in np.bincount(self.classes.reshape(-1), minlength=4) / self.classes.size)
+        return tuple(
+            float(each) for each in np.bincount(self.classes.reshape(-1), minlength=4) / self.classes.size
+        )
 
 
 def represent(plane: Plane, smoothing: float = 8.0, threshold: float = 0.5) -> Representation:
@@ -155,7 +157,8 @@ def gather(features: Plane, classes: int, rng: np.random.Generator) -> NDArray[n
     order = np.argsort(-np.bincount(labels, minlength=classes), kind="stable")
     rank = np.empty(classes, np.uint8)
     rank[order] = np.arange(classes, dtype=np.uint8)
-    return rank[labels].reshape(features.shape[1:])
+    found: NDArray[np.uint8] = rank[labels].reshape(features.shape[1:])
+    return found
 
 
 def _lloyd(sample: Plane, classes: int, rng: np.random.Generator) -> tuple[Plane, float]:

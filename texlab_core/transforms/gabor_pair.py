@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import ParamError
-from texlab_core.tasks import go_on
-from texlab_core.threads import workers
 from texlab_core.transforms.gabor import Response
+from texlab_core.work.tasks import go_on
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -90,7 +90,7 @@ class GaborPair:
         return scaled
 
     def respond(self, plane: NDArray[np.float32], look: Callable[[], None] = go_on) -> Response:
-        """Return what both filters answer, (H, W) complex64; the plane, (H, W) float32, is mirrored at its borders.
+        """Return what both filters answer, (H, W) complex64; the plane (H, W) float32 is mirrored at its borders.
 
         The real part is the correlation with the symmetric kernel, so that a bright stripe in its middle gives a
         large positive value. ``look`` is called between the transforms and may raise to stop.

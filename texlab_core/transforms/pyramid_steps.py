@@ -74,7 +74,9 @@ def analysis_steps(
     """
     most = max_levels(plane.shape)
     if not 1 <= levels <= most:
-        raise ParamError("levels", f"a whole number from 1 to {most} for {plane.shape[1]} x {plane.shape[0]}", levels)
+        raise ParamError(
+            "levels", f"a whole number from 1 to {most} for {plane.shape[1]} x {plane.shape[0]}", levels
+        )
     found = []
     for _ in range(levels):
         reduced = reduce(plane, border)

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import ParamError
-from texlab_core.tasks import go_on
-from texlab_core.threads import workers
+from texlab_core.work.tasks import go_on
+from texlab_core.work.threads import workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -152,7 +152,7 @@ def _spectra(scale: float, size: tuple[int, int]) -> NDArray[np.complex64]:
     from scipy import fft
 
     # Convolution: the kernels point the same way as the image, as everywhere here (they are symmetric).
-    spectra: NDArray[np.complex64] = fft.rfft2(scaled_kernels(scale).astype(np.float32), s=size)
+    spectra = np.asarray(fft.rfft2(scaled_kernels(scale).astype(np.float32), s=size), np.complex64)
     spectra.flags.writeable = False
     return spectra
 

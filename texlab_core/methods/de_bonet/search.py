@@ -2,11 +2,11 @@
 
 *Blank search* compares the whole parent structure with every location of the exemplar's level.
 
-*Hash keys*: a few components of the parent structure are divided by the square roots of their thresholds and rounded
-down. Two structures that match differ by at most one in each of these numbers, so that all matches have one of the
-3^d keys around a structure's own; the structures under these keys are compared, the others are not looked at. A
-component whose threshold is 0 must be equal and needs one key only; one that is constant tells nothing and is not
-used.
+*Hash keys*: a few components of the parent structure are divided by the square roots of their thresholds and
+rounded down. Two structures that match differ by at most one in each of these numbers, so that all matches have
+one of the 3^d keys around a structure's own; the structures under these keys are compared, the others are not
+looked at. A component whose threshold is 0 must be equal and needs one key only; one that is constant tells
+nothing and is not used.
 
 *The hierarchy* compares the coarsest level and then only the children of what matched there (what sampling does).
 
@@ -24,15 +24,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import ParamError
-from texlab_core.multiresolution.sampling import list_matches, match_chain
-from texlab_core.tasks import go_on
+from texlab_core.methods.de_bonet.sampling import list_matches, match_chain
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from texlab_core.multiresolution.sampling import Sampling
+    from texlab_core.methods.de_bonet.sampling import Sampling
 
     Ints = NDArray[np.int64]
     Places = NDArray[np.intp]
@@ -164,7 +164,7 @@ class KeyIndex:
         return sizes
 
     def candidates(self, place: int) -> NDArray[np.int32]:
-        """Return the structures under the keys around one location of the output, sorted locations of the level."""
+        """Return the structures under the keys around one location of the output, sorted."""
         found, known = self._look_up(np.array([place]))
         parts = [self._order[self._starts[each] : self._ends[each]] for each in found[known]]
         return np.sort(np.concatenate(parts)) if parts else np.empty(0, np.int32)
@@ -201,7 +201,9 @@ class KeyIndex:
         """Return the same of locations of the output: each of their ancestors has a source of its own."""
         ancestors = places >> 2 * (component.level - self.level)
         features = self.sampling.analysis.levels[component.level].features
-        values: NDArray[np.float32] = features[self.sampling.sources[component.level][ancestors], component.feature]
+        values: NDArray[np.float32] = features[
+            self.sampling.sources[component.level][ancestors], component.feature
+        ]
         return values
 
     def _pack(self, cells: Ints) -> Ints:
@@ -212,9 +214,10 @@ class KeyIndex:
 
 
 def _choose(sampling: Sampling, level: int, components: int) -> tuple[Component, ...]:
-    """Return components that leave few structures, one after the other: each parts most of the pairs still together.
+    """Return components, one after the other: each parts most of the pairs that are still together.
 
-    Pairs are near each other and far apart: what parts far ones may still leave the children of one parent together.
+    Pairs are near each other and far apart: what parts far ones may still leave the children of one parent
+    together.
     """
     count = sampling.analysis.grid.count(level)
     one = np.arange(min(count, _PAIRS), dtype=np.int64) * (count // min(count, _PAIRS))
@@ -253,7 +256,12 @@ def _verified(sampling: Sampling, level: int, place: int, candidates: NDArray[np
 
 
 def search(
-    sampling: Sampling, row: int, column: int, level: int, components: int = COMPONENTS, index: KeyIndex | None = None
+    sampling: Sampling,
+    row: int,
+    column: int,
+    level: int,
+    components: int = COMPONENTS,
+    index: KeyIndex | None = None,
 ) -> Searched:
     """Search the parent structures that match that of one location of the output, three ways.
 
