@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 # Of the noise: width in octaves of the Gaussian in the logarithm of the frequency.
-_OCTAVES = 0.58
+_OCTAVES = 0.6
 # Candidates for each disc of a closest packing; more would hardly place further ones.
 _TRIES = 6
 
 
-def noise_texture(side: int, rng: np.random.Generator, *, wavelength: float = 12.0) -> Plane:
+def noise_texture(side: int, rng: np.random.Generator, *, wavelength: float = 11.0) -> Plane:
     """Return isotropic Gaussian noise of one scale, (side, side) float32 in [0, 1], periodic.
 
     Parameters
@@ -77,12 +77,12 @@ def disc_texture(
     from scipy.spatial import cKDTree
 
     places = rng.random((int(_TRIES * (side / distance) ** 2) + 8, 2)) * side
-    tree = cKDTree(places, boxsize=[side, side])
+    tree = cKDTree(places, boxsize=np.full(2, float(side)))
     kept = places[keep_apart(tree.query_ball_point(places, distance))]
     grid = np.arange(side, dtype=np.float64)
     pixels = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
     reach = radius + softness
-    nearest, _ = cKDTree(kept, boxsize=[side, side]).query(pixels, distance_upper_bound=reach)
+    nearest, _ = cKDTree(kept, boxsize=np.full(2, float(side))).query(pixels, distance_upper_bound=reach)
     return soft_disc(np.minimum(nearest, reach).reshape(side, side), radius, softness)
 
 

@@ -34,6 +34,8 @@ SMOOTHING = (1.0, 64.0)
 _SIGMA, _SIDE = 1.0, 9
 SCALES = (1.0, 2.0, 4.0)
 MOST_CLASSES = 8
+# Responses that vary by less are constant up to rounding.
+_CONSTANT = 1e-5
 _SAMPLES, _ROUNDS, _STARTS = 4096, 40, 4
 
 
@@ -93,7 +95,8 @@ def represent(plane: Plane, smoothing: float = 8.0, threshold: float = 0.5) -> R
     along_x, along_y = oriented.derivatives(plane, 1, 2, size=_SIDE, sigma=_SIGMA)
     vertical, horizontal = along_x * along_x, along_y * along_y
     smooth_vertical, smooth_horizontal = _smooth(vertical, smoothing), _smooth(horizontal, smoothing)
-    level = threshold * (float(smooth_vertical.mean()) + float(smooth_horizontal.mean())) / 2
+    # An image of one gray level has rounding for energy.
+    level = max(threshold * (float(smooth_vertical.mean()) + float(smooth_horizontal.mean())) / 2, _CONSTANT**2)
     is_vertical, is_horizontal = smooth_vertical > level, smooth_horizontal > level
     classes = (is_horizontal * np.uint8(HORIZONTAL) + is_vertical * np.uint8(VERTICAL)).astype(np.uint8)
     return Representation(vertical, horizontal, smooth_vertical, smooth_horizontal, level, classes)
@@ -122,7 +125,7 @@ def energy_features(plane: Plane, smoothing: float = 12.0, look: Callable[[], No
     flat = found.reshape(len(found), -1)
     flat -= flat.mean(axis=1, keepdims=True, dtype=np.float64).astype(np.float32)
     spread = flat.std(axis=1, keepdims=True, dtype=np.float64)
-    flat /= np.where(spread > 1e-9, spread, 1).astype(np.float32)
+    flat *= np.where(spread > _CONSTANT, 1 / np.maximum(spread, _CONSTANT), 0).astype(np.float32)
     return found
 
 

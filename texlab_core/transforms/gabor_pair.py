@@ -92,8 +92,8 @@ class GaborPair:
     def respond(self, plane: NDArray[np.float32], look: Callable[[], None] = go_on) -> Response:
         """Return what both filters answer, (H, W) complex64; the plane (H, W) float32 is mirrored at its borders.
 
-        The real part is the correlation with the symmetric kernel, so that a bright stripe in its middle gives a
-        large positive value. ``look`` is called between the transforms and may raise to stop.
+        Both are convolutions: the answer to cos(k · x + p) has the phase p at its origin, 0 on the middle of a bright
+        stripe. ``look`` is called between the transforms and may raise to stop.
         """
         import cv2
         from scipy import fft
@@ -106,8 +106,7 @@ class GaborPair:
         look()
         spectrum = fft.fft2(padded, s=size, workers=workers())
         look()
-        # Correlation with both: convolution with their mirror images.
-        spectrum *= fft.fft2(self.kernel()[::-1, ::-1], s=size, workers=workers())
+        spectrum *= fft.fft2(self.kernel(), s=size, workers=workers())
         look()
         values = fft.ifft2(spectrum, overwrite_x=True, workers=workers())
         cut = values[2 * reach : 2 * reach + height, 2 * reach : 2 * reach + width]
