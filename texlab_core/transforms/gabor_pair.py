@@ -92,8 +92,8 @@ class GaborPair:
     def respond(self, plane: NDArray[np.float32], look: Callable[[], None] = go_on) -> Response:
         """Return what both filters answer, (H, W) complex64; the plane (H, W) float32 is mirrored at its borders.
 
-        Both are convolutions: the answer to cos(k · x + p) has the phase p at its origin, 0 on the middle of a bright
-        stripe. ``look`` is called between the transforms and may raise to stop.
+        Both are convolutions: the answer to cos(k · x + p) has the phase p at its origin, 0 on the middle of a
+        bright stripe. ``look`` is called between the transforms and may raise to stop.
         """
         import cv2
         from scipy import fft
