@@ -10,9 +10,9 @@ from texlab_core.errors import InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.stats import bands, frequency_support
 from texlab_core.stats.local_frequency import local_frequency
-from texlab_core.stats.spectrum import gray_plane
 from texlab_core.transforms import gaussian, laplacian, pyramid_steps, spots_bars, steerable
 from texlab_core.transforms.gabor_pair import GaborPair
+from texlab_core.transforms.luma import luma
 
 NOISE = np.random.default_rng(0).random((48, 61)).astype(np.float32)
 
@@ -140,7 +140,7 @@ def test_a_chirp_is_read_within_a_few_percent():
 
 
 def test_a_gradient_of_size_is_read_quarter_by_quarter():
-    found = local_frequency(gray_plane(as_exemplar("gallery:failure-sizegradient").pixels))
+    found = local_frequency(luma(as_exemplar("gallery:failure-sizegradient").pixels))
     medians = [float(np.median(found.wavelength[:, 64 * k : 64 * (k + 1)])) for k in range(4)]
     assert medians == pytest.approx([8.5, 14.5, 20, 26], rel=0.05)
 
