@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import inspect
 import json
 import math
 import numbers
@@ -277,10 +278,16 @@ def describe(params: type[Params]) -> tuple[Field, ...]:
     Raises
     ------
     TypeError
-        When a field has no ``Knob``, no default, or a type that no form could show (a programming error).
+        When a field has no ``Knob``, no default, or a type that no form could show, or when the class lacks its
+        decorator (programming errors).
     """
     if (known := _DESCRIBED.get(params)) is not None:
         return known
+    if inspect.get_annotations(params) and "__dataclass_fields__" not in vars(params):
+        raise TypeError(
+            f"{params.__name__} must be decorated with @dataclass(frozen=True, kw_only=True): without it, its "
+            "parameters do not exist."
+        )
     hints = get_type_hints(params, include_extras=True)
     fields = []
     for each in dataclasses.fields(params):
