@@ -10,7 +10,6 @@ from dock_scenes import image_input
 
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab.style.pictures import to_picture
-from texlab.style.theme import LIGHT
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.methods.de_bonet.method import DeBonetParams
@@ -44,4 +43,4 @@ def finished(channels: int = 3, column_id: int = 1, **changes: Any) -> ColumnSce
 
 
 def scene(*columns: ColumnScene, probe: Probe | None = None) -> Scene:
-    return Scene(LIGHT, exemplar(), columns, columns[0].id if columns else 0, probe)
+    return Scene(exemplar(), columns, columns[0].id if columns else 0, probe)

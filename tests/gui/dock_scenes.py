@@ -50,9 +50,9 @@ def column_of(image: Any = None, *, column_id: int = 1, title: str = "Stub", **m
     return ColumnScene(**(fields | more))
 
 
-def scene_of(*columns: ColumnScene, exemplar: Any = None, selected: int = 1, theme: Any = LIGHT) -> Scene:
+def scene_of(*columns: ColumnScene, exemplar: Any = None, selected: int = 1) -> Scene:
     given = None if exemplar is None else image_input(exemplar)
-    return Scene(theme, given, columns, selected)
+    return Scene(given, columns, selected)
 
 
 def frames(count: int, height: int = 20, width: int = 30) -> tuple[Frame, ...]:
@@ -61,6 +61,7 @@ def frames(count: int, height: int = 20, width: int = 30) -> tuple[Frame, ...]:
 
 def feed(dock: Dock, scene: Scene) -> Any:
     """Ask the dock's question, compute, present; returns the answer, None when there was no question."""
+    dock.show_scene(scene)
     question = dock.question(scene)
     if question is None:
         dock.present_nothing("There is nothing to show yet.")

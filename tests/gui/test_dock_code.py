@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 from tests.gui.conftest import drag, ids, result_image, wait_idle
 from texlab.docks.spectral.code import EDITED, CodeDock, encoded
 from texlab.docks.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
+from texlab.state.intentions import EditInputs
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.inputs import DataInput
 from texlab_core.engine.job import Job
@@ -59,14 +60,16 @@ def drag_cell(qtbot: Any, grid: Any, row: int, column: int, *, up: int) -> None:
 
 
 def sent(dock: CodeDock) -> list[tuple[int, Any, bool]]:
-    """Collect what the dock asks the controller to do: (column, code, final)."""
+    """Collect the edits that the dock intends: (column, code, final)."""
     told: list[tuple[int, Any, bool]] = []
 
-    class Recorder:
-        def edit_inputs(self, column_id: int, inputs: Any, text: str, final: bool = True) -> None:
-            told.append((column_id, code_from_json(inputs[0][1].data).code if inputs else None, final))
+    def take(intention: Any) -> None:
+        assert isinstance(intention, EditInputs)
+        inputs = intention.inputs
+        code = code_from_json(inputs[0][1].data).code if inputs else None
+        told.append((intention.column_id, code, intention.final))
 
-    dock.intention.connect(lambda act: act(Recorder()))
+    dock.intention.connect(take)
     return told
 
 

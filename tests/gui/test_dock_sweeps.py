@@ -20,10 +20,12 @@ from texlab.docks.sweeps.dock import SweepsDock
 from texlab.docks.sweeps.sheet_view import packed
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
-from texlab.runs.sweep_run import SweepPlan
+from texlab.runs.sweep_run import sweep_of
 from texlab.state.changes import with_cell
 from texlab.state.session import Column, Sample, Session, State
-from texlab.style.theme import DARK, LIGHT, ThemeSource
+from texlab.state.sweeps import SweepPlan
+from texlab.style.theme import DARK, LIGHT
+from texlab.window.carrier import Carrier
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
@@ -48,11 +50,11 @@ class Bench:
 
     def __init__(self, qtbot, *columns):
         self.session = Session()
-        self.themes = ThemeSource("light")
-        self.controller = Controller(self.session, self.themes)
+        self.controller = Controller(self.session)
         self.dock = SweepsDock()
         self.host = DockHost(self.dock, Slots(1))
-        self.dock.intention.connect(lambda act: act(self.controller))
+        self.carrier = Carrier(self.controller, self.session.select, lambda source: None, lambda marks: None)
+        self.dock.intention.connect(self.carrier.carry_out)
         self.controller.scene_changed.connect(self.host.show_scene)
         self.problems = []
         self.controller.problem.connect(self.problems.append)
@@ -119,9 +121,11 @@ def start(qtbot, dock):
 
 
 def complete(qtbot, dock):
+    before = dock.shown.number
     start(qtbot, dock)
+    qtbot.waitUntil(lambda: dock.shown.number > before and dock.shown.status == "finished", timeout=PATIENCE_MS)
     assert dock.panel.error.text() == ""
-    qtbot.waitUntil(lambda: not dock.running and len(dock.cells) == len(dock.sweep.jobs), timeout=PATIENCE_MS)
+    assert len(dock.cells) == len(dock.sweep.jobs)
 
 
 def click_cell(qtbot, dock, index):
@@ -261,7 +265,7 @@ def test_what_makes_no_sense_is_said_in_place(qtbot, bench, knob, spacing, text,
         qtbot.keyClick(axis.listed, Qt.Key.Key_Delete)
         qtbot.keyClicks(axis.listed, text)
     start(qtbot, dock)
-    assert says in dock.panel.error.text()
+    qtbot.waitUntil(lambda: says in dock.panel.error.text())
     assert dock.panel.error.isVisible()
     assert dock.sweep is None
     choose(qtbot, axis.knob, "exact")
@@ -272,12 +276,12 @@ def test_the_same_knob_twice_and_no_choice(qtbot, bench):
     dock = bench().dock
     choose(qtbot, dock.panel.down.knob, "level")
     start(qtbot, dock)
-    assert "got level twice" in dock.panel.error.text()
+    qtbot.waitUntil(lambda: "got level twice" in dock.panel.error.text())
     choose(qtbot, dock.panel.down.knob, "border")
     for box in dock.panel.down.boxes:
         qtbot.keyClick(box, Qt.Key.Key_Space)
     start(qtbot, dock)
-    assert "at least one choice of border" in dock.panel.error.text()
+    qtbot.waitUntil(lambda: "at least one choice of border" in dock.panel.error.text())
 
 
 def test_too_many_pixels_are_refused(bench):
@@ -285,7 +289,7 @@ def test_too_many_pixels_are_refused(bench):
     state, column = here.session.state, here.session.selected_column
     plan = SweepPlan((Vary("seed", tuple(range(400))),), 512)
     with pytest.raises(InputError, match="400 cells of 512 x 512 are more than 32 megapixels"):
-        plan.sweep(state, column, exemplar())
+        sweep_of(plan, state, column, exemplar())
 
 
 # Runs
@@ -332,13 +336,13 @@ def test_the_sheet_fills_while_it_runs_and_stops_at_once(qtbot, bench):
     set_range(qtbot, dock.panel.across, "seed", "1", "40", "40")
     running.clear()
     start(qtbot, dock)
-    assert dock.stop_button.isEnabled()
+    qtbot.waitUntil(dock.stop_button.isEnabled)
     assert dock.progress.isVisible()
     qtbot.waitUntil(lambda: 1 <= len(dock.cells) < 40, timeout=PATIENCE_MS)
     assert dock.sheet.canvas.describe(39) == "seed 40: not finished yet"
     qtbot.waitUntil(lambda: "left" in dock.status.text(), timeout=PATIENCE_MS)
     qtbot.mouseClick(dock.stop_button, LEFT)
-    assert "stopped" in dock.status.text()
+    qtbot.waitUntil(lambda: "stopped" in dock.status.text())
     qtbot.waitUntil(lambda: not dock.running, timeout=PATIENCE_MS)
     begun, made = len(running), len(dock.cells)
     assert made <= begun < 40
@@ -365,10 +369,11 @@ def test_keys_start_and_stop(qtbot, bench):
 def test_a_second_start_replaces_the_first(qtbot, bench):
     dock = bench(Column(1, "stub", StubParams(rounds=200))).dock
     start(qtbot, dock)
+    qtbot.waitUntil(lambda: dock.running)
     first = dock.sweep
     choose(qtbot, dock.panel.across.knob, "border")
     start(qtbot, dock)
-    assert dock.sweep is not first
+    qtbot.waitUntil(lambda: dock.sweep is not first)
     qtbot.waitUntil(lambda: not dock.running, timeout=PATIENCE_MS)
     assert [dock.cells[k].cell.values["border"] for k in (0, 1)] == ["reflect", "wrap"]
 
@@ -401,6 +406,7 @@ def test_closing_joins_a_sweep_that_runs(qtbot, bench):
     start(qtbot, here.dock)
     qtbot.waitUntil(lambda: here.dock.running)
     here.host.close()
+    here.controller.close()
     assert not [each for each in threading.enumerate() if each.name.startswith(("sweep", "texlab-sweep"))]
 
 
@@ -408,7 +414,7 @@ def test_without_an_exemplar_nothing_starts(qtbot, bench):
     here = bench()
     here.controller._preparation.prepared = None
     start(qtbot, here.dock)
-    assert here.dock.panel.error.text() == "There is no exemplar yet."
+    qtbot.waitUntil(lambda: here.dock.panel.error.text() == "There is no exemplar yet.")
 
 
 # Cells
@@ -423,7 +429,7 @@ def test_a_click_takes_a_cell_as_one_step(qtbot, bench):
     click_cell(qtbot, dock, 2)
     assert here.params == StubParams(level=2.0, exact=False)
     assert session.undo_text == "sweep level 2, exact no"
-    assert dock.sheet.canvas.marked == 2
+    qtbot.waitUntil(lambda: dock.sheet.canvas.marked == 2)
     qtbot.waitUntil(lambda: not here.controller.busy, timeout=PATIENCE_MS)
     session.undo()
     assert here.params == StubParams()
@@ -503,13 +509,13 @@ def test_other_columns_take_the_cells(qtbot, bench):
     dock, session = here.dock, here.session
     complete(qtbot, dock)
     session.select(3)
-    qtbot.waitUntil(lambda: dock._column_id == 3)
+    qtbot.waitUntil(lambda: dock._column.id == 3)
     click_cell(qtbot, dock, 1)
     assert session.state.column(3).params.level == 0.8
     assert session.state.column(1).params.level == 0.5
     # Beside another method, the column that the sweep was started for takes them.
     session.select(2)
-    qtbot.waitUntil(lambda: dock._column_id == 2)
+    qtbot.waitUntil(lambda: dock._column.id == 2)
     assert dock.sheet.canvas.marked is None
     click_cell(qtbot, dock, 2)
     assert session.state.column(1).params.level == 1.6

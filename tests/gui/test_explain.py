@@ -22,6 +22,7 @@ from texlab.docks.explain.de_bonet import (
     summary,
 )
 from texlab.docks.explain.dock import INVITATION, ExplainDock
+from texlab.state.intentions import Pin, ShowMarks
 from texlab.state.scene import Probe
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.methods.de_bonet.explain import explain
@@ -51,13 +52,14 @@ class Looker:
         self.dock = shown(qtbot, ExplainDock(), 1000, 260)
         self.marks = None
         self.pins = []
-        self.dock.intention.connect(lambda act: act(self))
+        self.dock.intention.connect(self._take)
 
-    def show_marks(self, marks):
-        self.marks = marks
-
-    def pin(self, *place):
-        self.pins.append(place)
+    def _take(self, intention):
+        if isinstance(intention, ShowMarks):
+            self.marks = intention.marks
+        else:
+            assert isinstance(intention, Pin)
+            self.pins.append((intention.column_id, intention.row, intention.column))
 
     def look(self, row, place, *, pinned=False):
         return feed(self.dock, scene(self.column, probe=Probe(1, row, place, pinned)))

@@ -7,6 +7,7 @@ from PySide6.QtCore import Qt
 
 from texlab.docks.explain import efros_leung, explainer_for, heeger_bergen
 from texlab.docks.explain.dock import ExplainDock
+from texlab.state.intentions import ShowMarks
 from texlab.state.scene import Probe, Scene
 from texlab.style.pictures import Mark, to_picture
 from texlab.style.theme import DARK, LIGHT
@@ -45,7 +46,7 @@ def matched():
 def scene(result, row, column, *, pinned=False):
     shown_column = column_of(result.image, title="Stub", method=result.job.method, params=result.job.params)
     made = type(shown_column)(**{**vars(shown_column), "result": result})
-    return Scene(LIGHT, result.job.inputs["exemplar"], (made,), 1, Probe(1, row, column, pinned))
+    return Scene(result.job.inputs["exemplar"], (made,), 1, Probe(1, row, column, pinned))
 
 
 @pytest.fixture
@@ -57,14 +58,11 @@ def marks_of(dock, qtbot, act):
     """Do something and return the marks that the dock asks for at last."""
     asked = []
 
-    class Listener:
-        @staticmethod
-        def show_marks(marks):
-            asked.append(marks)
-
-    dock.intention.connect(lambda intention: intention(Listener))
+    dock.intention.connect(asked.append)
     act()
-    return asked[-1]
+    last = asked[-1]
+    assert isinstance(last, ShowMarks)
+    return last.marks
 
 
 # Efros-Leung.

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.runs.exemplar import prepare
 from texlab.state.changes import restored
+from texlab.state.intentions import Open
 from texlab.state.session import Column, Session, State
 from texlab.storage.reading import open_source
 from texlab_core.documents.record import save_result
@@ -180,6 +181,6 @@ def test_parameters_of_another_method_are_not_taken() -> None:
 
 def test_a_dock_can_have_a_texture_opened(qtbot: Any, explorer: Explorer) -> None:
     dock = explorer.docks[0]
-    dock.intention.emit(lambda controller: controller.open_wanted.emit("gallery:oriented-zebra"))
+    dock.intention.emit(Open("gallery:oriented-zebra"))
     wait_idle(qtbot, explorer)
     assert explorer.session.state.sample.source.name == "gallery:oriented-zebra"

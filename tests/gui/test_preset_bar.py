@@ -14,7 +14,6 @@ from texlab.presets.dialog import PresetDialog
 from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
 from texlab.state.session import Column, Sample, Session, State
-from texlab.style.theme import ThemeSource
 from texlab_core.documents.presets import Preset, read_preset, write_preset
 from texlab_core.engine.registry import find_method
 
@@ -42,7 +41,7 @@ class Bench:
         self.window.show()
         qtbot.waitExposed(self.window)
         self.session = Session()
-        self.controller = Controller(self.session, ThemeSource("light"))
+        self.controller = Controller(self.session)
         self.manager = PresetManager(self.window, self.bar, self.session, self.controller)
         self.problems, self.said = [], []
         self.controller.problem.connect(self.problems.append)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,7 +29,7 @@ from texlab.docks.thresholds.table import (
     table_field,
 )
 from texlab.form.form import ParameterForm
-from texlab.state.session import Session
+from texlab.state.intentions import EditField
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.registry import methods
 from texlab_core.methods.de_bonet.distances import feature_distances
@@ -321,12 +320,7 @@ def test_what_was_begun_stays_with_its_own_column(hand, qtbot, begun, following)
     assert not view.busy
     if following == "another table":
         assert hand.editor.view.table == other.params.thresholds
-    session = Session()
-    for _ in range(2):
-        session.add_column("de-bonet", hand.column.params)
-    edited = []
-    told[0](SimpleNamespace(session=session, edit_params=lambda *args: edited.append(args)))
-    assert [(args[0], args[3]) for args in edited] == [(hand.column.id, True)]
+    assert told == [EditField(hand.column.id, "thresholds", begun_table, True)]
 
 
 def test_reset_of_a_cell_a_row_and_everything(hand):

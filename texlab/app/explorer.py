@@ -22,6 +22,7 @@ from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.settings import columns_from_json, seed_and_size
+from texlab.window.carrier import Carrier
 from texlab.window.exchange import Exchange
 from texlab.window.gallery_thumbnails import Thumbnails
 from texlab.window.handlers import Handlers
@@ -57,7 +58,7 @@ class Explorer(QObject):
         self.settings = settings
         self.themes = themes
         self.session = Session(self)
-        self.controller = Controller(self.session, themes, self)
+        self.controller = Controller(self.session, self)
         self.opener = Opener(self.session, self.controller, settings, lambda path: self.presets.import_file(path))
         self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
         self.autosave = Autosave(self.session, settings, self)
@@ -74,6 +75,7 @@ class Explorer(QObject):
         self.presenter = Presenter(
             window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
         )
+        self.carrier = Carrier(self.controller, self.handlers.select, self.opener.open, self.presenter.show_marks)
         self._closed = False
         self._memory = QTimer(self)
         self._memory.setInterval(MEMORY_MS)
@@ -152,21 +154,19 @@ class Explorer(QObject):
         window.closing.connect(self.close)
         window.gallery.chosen.connect(self.opener.open)
         self._connect_controls()
-        session.changed.connect(lambda *_: presenter.show_session())
+        # It comes with every change, and also when only the history is another one.
         session.history_changed.connect(presenter.show_session)
         session.selected.connect(lambda _: presenter.show_session())
         controller.scene_changed.connect(presenter.show_scene)
         controller.exemplar_ready.connect(presenter.show_exemplar)
-        controller.marks_changed.connect(presenter.show_marks)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
-        controller.open_wanted.connect(self.opener.open)
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
         presenter.recent_chosen.connect(self.opener.open)
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
         self.themes.changed.connect(lambda _: presenter.show_theme(self.themes.theme))
         self.workspace.column_made.connect(self._connect_column)
         for dock in self.docks:
-            dock.intention.connect(lambda act: act(controller))
+            dock.intention.connect(self.carrier.carry_out)
 
     def _connect_controls(self) -> None:
         """Connect what the user turns and drags."""

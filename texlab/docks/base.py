@@ -18,11 +18,16 @@ if TYPE_CHECKING:
 class Dock(QWidget):
     """A tab below the images.
 
-    A dock never computes and never writes the session. ``question`` says (quickly, from the scene and the
-    dock's own controls) what is to be computed in a background thread; ``present`` shows the answer. When its
-    own controls change what it asks, a dock emits ``asks``. What the user does to the session through it (take
-    parameters,
-    choose a pixel) it emits as ``intention``: a callable that is given the controller.
+    A dock gets frozen data and sends frozen values; it holds no controller, worker or session, never computes and
+    never writes.
+
+    - ``show_scene`` shows at once what needs no computing. It is called for every newer scene while the dock is
+      seen, so what it shows follows from the scene alone: whatever happened while the dock was hidden is in it.
+    - ``question`` says (quickly, from the scene and the dock's own controls) what is to be computed in a
+      background thread; ``present`` shows the answer, ``present_nothing`` why there is none, ``present_waiting``
+      that it is under way. When its own controls change what it asks, a dock emits ``asks``.
+    - What the user does to the session through it (take parameters, choose a pixel, save a file) it emits as
+      ``intention``: a value of :mod:`texlab.state.intentions`.
     """
 
     name: ClassVar[str]
@@ -34,10 +39,14 @@ class Dock(QWidget):
 
     asks = Signal()
     intention = Signal(object)
+    """A value of :mod:`texlab.state.intentions`."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName(f"dock-{self.name}")
+
+    def show_scene(self, scene: Scene) -> None:
+        """Show what needs no computing."""
 
     def question(self, scene: Scene) -> Question | None:
         """Return what to compute for this scene, or None when there is nothing to show."""
@@ -51,6 +60,9 @@ class Dock(QWidget):
         """Show why there is nothing to show, in one sentence."""
         raise NotImplementedError
 
+    def present_waiting(self) -> None:
+        """Say that the answer is under way, where nothing else is shown."""
+
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
 
@@ -63,9 +75,6 @@ class Dock(QWidget):
             QToolTip.hideText()
             return True
         return super().event(event)
-
-    def shut_down(self) -> None:
-        """Stop and join what the dock started itself; the window is about to go."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from texlab_core.engine.steps import FloatImage
 
 
+WORKING = "Working ..."
+
+
 def shown_image(column: ColumnScene | None) -> FloatImage | None:
     """Return the column's values: the finished result, or the preview while it runs."""
     if column is None:
@@ -96,7 +99,7 @@ class FramedDock(Dock):
     def present(self, answer: Any) -> None:
         """Show what ``Question.compute`` returned."""
         self.answer = answer
-        self._stack.setCurrentWidget(self.body)
+        self.show_body()
         self.show_answer(answer)
 
     def present_nothing(self, reason: str) -> None:
@@ -104,6 +107,14 @@ class FramedDock(Dock):
         self.answer = None
         self._message.setText(self.why or reason or self.empty)
         self._stack.setCurrentWidget(self._message)
+
+    def present_waiting(self) -> None:
+        """Say that the answer is under way, unless one is shown."""
+        self._message.setText(WORKING)
+
+    def show_body(self) -> None:
+        """Show the body instead of a sentence: what is in it needs no answer."""
+        self._stack.setCurrentWidget(self.body)
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

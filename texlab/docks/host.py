@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
+from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer
 
 from texlab.runs.worker import Task, Worker
 
@@ -21,10 +21,9 @@ class DockHost(QObject):
 
     A running question is not interrupted by a newer scene, or a live run would never be shown; the newer scene is
     asked about as soon as the answer is there, but not within ``dock.rest_ms`` of it: while a control is dragged,
-    the pictures come first.
+    the pictures come first. A question is dropped when its dock goes out of sight: all docks share the places, and
+    nobody who looks at one waits for what nobody sees.
     """
-
-    failed = Signal(str)
 
     def __init__(self, dock: Dock, slots: Slots, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -58,10 +57,9 @@ class DockHost(QObject):
             self._worker.leave()
 
     def close(self) -> None:
-        """Stop and join the thread, and what the dock started itself."""
+        """Stop and join the thread."""
         self._rest.stop()
         self._look.stop()
-        self.dock.shut_down()
         if self._worker is not None:
             self._worker.close()
 
@@ -91,8 +89,11 @@ class DockHost(QObject):
         if seen is not self._was_seen:
             self._was_seen = seen
             self.dock.set_seen(seen)
+            if not seen:
+                self._drop()
         if self._scene is None or not seen:
             return
+        self.dock.show_scene(self._scene)
         if self._computing:
             self._dirty = True
             return
@@ -120,7 +121,14 @@ class DockHost(QObject):
             return question.compute(task.should_stop)
 
         self._computing = True
+        self.dock.present_waiting()
         self._worker.submit(work)
+
+    def _drop(self) -> None:
+        """Forget a question under way: it is asked anew when the dock is seen again."""
+        if self._worker is not None and self._computing:
+            self._worker.cancel()
+            self._asked, self._computing, self._dirty = None, False, False
 
     def _answered(self, answer: Any) -> None:
         self._computing = False

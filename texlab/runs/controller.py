@@ -13,6 +13,7 @@ from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
 from texlab.runs.slots import Slots
+from texlab.runs.sweep_runner import SweepRunner
 from texlab.runs.worker import Request, Worker
 from texlab.state.changes import rescaled
 from texlab.state.difference import difference
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.session import Sample, Session, State
-    from texlab.style.pictures import Mark
-    from texlab.style.theme import ThemeSource
+    from texlab.state.sweeps import SweepPlan
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
 
@@ -35,8 +35,7 @@ class Controller(QObject):
     """Runs columns when the session changes and tells the window what to show.
 
     ``scene_changed(scene)`` after every change; ``exemplar_ready(prepared)`` when another exemplar is in use;
-    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news;
-    ``open_wanted(source)`` when a dock wants a file or a texture of the gallery opened.
+    ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news.
     """
 
     scene_changed = Signal(object)
@@ -44,13 +43,10 @@ class Controller(QObject):
     problem = Signal(str)
     said = Signal(str)
     all_idle = Signal()
-    marks_changed = Signal(object)
-    open_wanted = Signal(object)
 
-    def __init__(self, session: Session, themes: ThemeSource, parent: QObject | None = None) -> None:
+    def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.session = session
-        self._themes = themes
         self._shared = Shared(Slots(max(1, os.cpu_count() or 1)), AnalysisCache(), Warmth())
         self._runners: dict[int, ColumnRunner] = {}
         self._leaving: list[ColumnRunner] = []
@@ -69,10 +65,11 @@ class Controller(QObject):
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
         self._refresh.timeout.connect(self._announce)
+        self._sweeps = SweepRunner(self.slots, self.warmth, self)
+        self._sweeps.changed.connect(self._refresh.start)
         self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
-        themes.changed.connect(lambda _: self._refresh.start())
 
     # What there is to show.
 
@@ -91,7 +88,8 @@ class Controller(QObject):
         columns = tuple(
             self._runners[column.id].scene for column in self.session.state.columns if column.id in self._runners
         )
-        return Scene(self._themes.theme, self.exemplar, columns, self.session.selected_id, self._probe)
+        session, sweep = self.session, self._sweeps.scene
+        return Scene(self.exemplar, columns, session.selected_id, self._probe, sweep, session.state.seed)
 
     def column_scene(self, column_id: int) -> ColumnScene | None:
         """Return what one column shows."""
@@ -180,10 +178,6 @@ class Controller(QObject):
             self._probe = probe
             self._refresh.start()
 
-    def show_marks(self, marks: tuple[Mark, ...]) -> None:
-        """Outline places in the exemplar."""
-        self.marks_changed.emit(marks)
-
     def reset_params(self, column_id: int) -> None:
         """Give a column its method's defaults."""
         column = self.session.state.column(column_id)
@@ -216,6 +210,14 @@ class Controller(QObject):
         for runner in list(self._runners.values()):
             runner.stop()
 
+    def run_sweep(self, column_id: int, plan: SweepPlan) -> None:
+        """Run a sweep of a column's method instead of one that runs."""
+        self._sweeps.start(plan, self.session.state, column_id, self.exemplar)
+
+    def stop_sweep(self) -> None:
+        """Stop the sweep; the finished cells stay."""
+        self._sweeps.stop()
+
     def once(
         self,
         name: str,
@@ -243,8 +245,9 @@ class Controller(QObject):
         self._runners.clear()
         self._leaving.clear()
 
-    def _threads(self) -> list[ColumnRunner | Preparation | Worker | Errands]:
-        return [*self._runners.values(), *self._leaving, self._preparation, self._warming, self._errands]
+    def _threads(self) -> list[ColumnRunner | Preparation | SweepRunner | Worker | Errands]:
+        others = (self._preparation, self._sweeps, self._warming, self._errands)
+        return [*self._runners.values(), *self._leaving, *others]
 
     # The session has changed.
 

@@ -1,4 +1,4 @@
-"""Sweeps in the window: what the user asked for as a sweep, its run in a worker's thread, a cell taken over."""
+"""Sweeps in the window: what the user asked for as a sweep, and its run in a worker's thread."""
 
 from __future__ import annotations
 
@@ -7,28 +7,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab.runs.column_run import TaskLike, with_exemplar
+from texlab.state.sweeps import ShownCell
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
 from texlab_core.errors import InputError
-from texlab_core.sheets.sweep import Cell, Sweep, Vary
+from texlab_core.sheets.sweep import Cell, Sweep
 from texlab_core.sheets.sweep_running import Places, run_sweep
 
 if TYPE_CHECKING:
     from texlab.state.session import Column, State
-    from texlab.style.pictures import Picture
+    from texlab.state.sweeps import SweepPlan
     from texlab_core.engine.inputs import ImageInput
-    from texlab_core.engine.params import Params
 
 # All results are kept at full precision, for the sheet that is saved: 12 bytes a pixel.
 MAX_PIXELS = 32 * 2**20
-
-
-@dataclass(frozen=True, eq=False)
-class ShownCell:
-    """A finished cell with what is painted, (H, W, 3) uint8; None when it failed."""
-
-    cell: Cell
-    picture: Picture | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,47 +31,29 @@ class SweepProgress:
     fraction: float
 
 
-@dataclass(frozen=True)
-class SweepPlan:
-    """What the user asked for.
+def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput) -> Sweep:
+    """Return the sweep of a column's method that was asked for.
 
-    Parameters
-    ----------
-    axes
-        One or two.
-    side
-        Height and width of the cells in pixels; None takes the size of the columns.
-    params
-        What all cells share but for what is varied; None takes the column's.
+    Raises
+    ------
+    InputError
+        When it cannot be run, or would not fit in memory.
     """
-
-    axes: tuple[Vary, ...]
-    side: int | None = None
-    params: Params | None = None
-
-    def sweep(self, state: State, column: Column, exemplar: ImageInput) -> Sweep:
-        """Return the sweep of a column's method.
-
-        Raises
-        ------
-        InputError
-            When it cannot be run, or would not fit in memory.
-        """
-        size = state.size if self.side is None else (self.side, self.side)
-        base = Job(
-            method=column.method,
-            inputs=with_exemplar(exemplar, column.inputs),
-            params=column.params if self.params is None else self.params,
-            size=size,
-            seed=state.seed,
+    size = state.size if plan.side is None else (plan.side, plan.side)
+    base = Job(
+        method=column.method,
+        inputs=with_exemplar(exemplar, column.inputs),
+        params=column.params if plan.params is None else plan.params,
+        size=size,
+        seed=state.seed,
+    )
+    sweep = Sweep(base, plan.axes)
+    if len(sweep.jobs) * size[0] * size[1] > MAX_PIXELS:
+        raise InputError(
+            f"{len(sweep.jobs)} cells of {size[1]} x {size[0]} are more than "
+            f"{MAX_PIXELS // 2**20} megapixels; ask for fewer or smaller cells."
         )
-        sweep = Sweep(base, self.axes)
-        if len(sweep.jobs) * size[0] * size[1] > MAX_PIXELS:
-            raise InputError(
-                f"{len(sweep.jobs)} cells of {size[1]} x {size[0]} are more than "
-                f"{MAX_PIXELS // 2**20} megapixels; ask for fewer or smaller cells."
-            )
-        return sweep
+    return sweep
 
 
 @dataclass

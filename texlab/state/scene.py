@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from texlab.state.sweeps import NO_SWEEP, SweepScene
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
@@ -91,13 +92,30 @@ class Probe:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Everything that docks may show."""
+    """Everything that docks may show.
 
-    theme: Theme
+    Parameters
+    ----------
+    exemplar
+        As the methods get it; None while it is prepared for the first time.
+    columns
+        From left to right.
+    selected_id
+        Id of the chosen column; 0 when there is none.
+    probe
+        The pixel that the user asks about.
+    sweep
+        The newest sweep.
+    seed
+        Of all columns.
+    """
+
     exemplar: ImageInput | None = None
     columns: tuple[ColumnScene, ...] = ()
     selected_id: int = 0
     probe: Probe | None = None
+    sweep: SweepScene = NO_SWEEP
+    seed: int = 1
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -11,6 +11,7 @@ from texlab.docks.base import Question
 from texlab.docks.explain import explainer_for
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
+from texlab.state.intentions import Pin, ShowMarks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -128,7 +129,7 @@ class ExplainDock(FramedDock):
         shown = marks if self._seen else ()
         if shown or self._marked:
             self._marked = bool(shown)
-            self.intention.emit(lambda controller: controller.show_marks(shown))
+            self.intention.emit(ShowMarks(shown))
 
     def _show_probe(self, probe: Probe | None, column: ColumnScene | None) -> None:
         self._probe = probe
@@ -155,9 +156,9 @@ class ExplainDock(FramedDock):
         if probe is not None:
             row, column = self.pixel_row.value(), self.pixel_column.value()
             if (row, column) != (probe.row, probe.column):
-                self.intention.emit(lambda controller: controller.pin(probe.column_id, row, column))
+                self.intention.emit(Pin(probe.column_id, row, column))
 
     def _let_go(self) -> None:
         if self._probe is not None and self._probe.pinned:
             probe = self._probe
-            self.intention.emit(lambda controller: controller.pin(probe.column_id, probe.row, probe.column))
+            self.intention.emit(Pin(probe.column_id, probe.row, probe.column))

@@ -11,17 +11,15 @@ from texlab.docks.base import Question
 from texlab.docks.fill.mask_canvas import DEFAULT_RADIUS, MaskCanvas
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Same
+from texlab.state.intentions import AskOnce, FillHoles, Tell
 from texlab.style.pictures import to_picture
 from texlab_core.engine.inputs import ImageInput, hash_arrays
-from texlab_core.engine.registry import methods
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from texlab.runs.controller import Controller
-    from texlab.runs.worker import Task
     from texlab.state.scene import Scene
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
@@ -161,46 +159,38 @@ class FillDock(FramedDock):
             self, "Load mask", "", "Images (*.png *.tif *.tiff *.webp *.bmp *.pgm)"
         )
         if path:
-            canvas = self.canvas
+            canvas, size = self.canvas, self.canvas.mask.shape
 
-            def act(controller: Controller) -> None:
-                def done(mask: NDArray[np.bool_]) -> None:
-                    if mask.shape == canvas.mask.shape:
-                        canvas.set_mask(mask)
-                    else:
-                        controller.problem.emit("The mask was read for another picture; load it again.")
+            def done(mask: NDArray[np.bool_]) -> None:
+                if mask.shape == canvas.mask.shape:
+                    canvas.set_mask(mask)
+                else:
+                    sentence = "The mask was read for another picture; load it again."
+                    self.intention.emit(Tell(sentence, problem=True))
 
-                controller.once("mask", lambda task: read_mask(path, canvas.mask.shape), done)
-
-            self.intention.emit(act)
+            self.intention.emit(AskOnce("mask", lambda should_stop: read_mask(path, size), done))
 
     def _fill(self) -> None:
         if self._image is not None:
-            self._submit(self._image.shape[:2])
+            height, width = self._image.shape[:2]
+            self._submit((height, width))
 
     def _grow(self) -> None:
         self._submit(None)
 
-    def _submit(self, size: tuple[int, ...] | None) -> None:
+    def _submit(self, size: tuple[int, int] | None) -> None:
         exemplar, image = self._exemplar, self._image
         if exemplar is None or image is None:
             return
         mask, region = self.canvases["mask"].mask.copy(), self.canvases["region"].mask.copy()
 
-        def make(task: Task) -> tuple[tuple[str, ImageInput], ...]:
+        def make(should_stop: Callable[[], bool]) -> tuple[tuple[str, ImageInput], ...]:
             return fill_inputs(exemplar, image, mask, region)
 
-        def act(controller: Controller) -> None:
-            def done(inputs: tuple[tuple[str, ImageInput], ...]) -> None:
-                session = controller.session
-                column = next((each for each in session.state.columns if each.method == METHOD), None)
-                params = column.params if column is not None else methods()[METHOD].params()
-                fixed = None if size is None else (size[0], size[1])
-                session.select(session.fill(params, inputs, fixed, METHOD))
+        def done(inputs: tuple[tuple[str, ImageInput], ...]) -> None:
+            self.intention.emit(FillHoles(METHOD, inputs, size))
 
-            controller.once("fill", make, done)
-
-        self.intention.emit(act)
+        self.intention.emit(AskOnce("fill", make, done))
 
 
 def fill_inputs(

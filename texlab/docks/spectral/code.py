@@ -37,6 +37,7 @@ from texlab.docks.spectral.code_numbers import (
     with_value,
 )
 from texlab.docks.spectral.code_views import CodeGrid, HistogramBars
+from texlab.state.intentions import AskOnce, EditInputs, Open, Tell
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number as digits
 from texlab_core.engine.inputs import DataInput
@@ -45,8 +46,6 @@ from texlab_core.transforms.gabor_bank import CENTRE_FREQUENCIES, CENTRE_ORIENTA
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.runs.controller import Controller
-    from texlab.runs.worker import Task
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
@@ -391,7 +390,7 @@ class CodeDock(FramedDock):
         self._pressed = None
         sent, column_id = self._sent, self._column_id
         if sent is not None:
-            self.intention.emit(lambda controller: edit_code(controller, column_id, sent, final=True))
+            self.intention.emit(edit_code(column_id, sent, final=True))
 
     def _nudge(self, number: Number, steps: int) -> None:
         if self._code is not None:
@@ -421,17 +420,15 @@ class CodeDock(FramedDock):
         self._code, self._key, self._name, self._sent = code, given.sha256, EDITED, given
         self.back.setEnabled(True)
         self._show_code()
-        column_id = self._column_id
-        self.intention.emit(lambda controller: edit_code(controller, column_id, given, final=final))
+        self.intention.emit(edit_code(self._column_id, given, final=final))
 
     def _back(self) -> None:
-        column_id = self._column_id
-        self.intention.emit(lambda controller: controller.edit_inputs(column_id, (), "back to the exemplar"))
+        self.intention.emit(EditInputs(self._column_id, (), "back to the exemplar"))
 
     def _ask_open(self) -> None:
         path, _ = QFileDialog.getOpenFileName(self, "Open code", "", FILES)
         if path:
-            self.intention.emit(lambda controller: controller.open_wanted.emit(path))
+            self.intention.emit(Open(path))
 
     def _ask_save(self) -> None:
         code, exemplar = self._code, self._exemplar_name
@@ -440,7 +437,18 @@ class CodeDock(FramedDock):
         stem = Path(exemplar.replace("gallery:", "").replace("/", "-")).stem
         path, _ = QFileDialog.getSaveFileName(self, "Save code", f"{stem}.msg.json", FILES)
         if path:
-            self.intention.emit(lambda controller: save_code(controller, code, path, exemplar))
+            self.save(code, path)
+
+    def save(self, code: MsgCode, path: str) -> None:
+        """Save a code as a file in the background."""
+        exemplar = self._exemplar_name
+
+        def write(should_stop: Callable[[], bool]) -> None:
+            from texlab_core.methods.spectral.codefile import write_code
+
+            write_code(code, path, exemplar)
+
+        self.intention.emit(AskOnce("save-code", write, lambda _: self.intention.emit(Tell(f"Saved {path}."))))
 
 
 def _short(shown: float, group: Group) -> str:
@@ -450,17 +458,6 @@ def _short(shown: float, group: Group) -> str:
     return f"{shown:.2f}" if shown < 10 else f"{shown:.1f}" if shown < 100 else f"{shown:.0f}"
 
 
-def edit_code(controller: Controller, column_id: int, code: DataInput, *, final: bool) -> None:
-    """Make a column work from a code."""
-    controller.edit_inputs(column_id, (("code", code),), "code", final)
-
-
-def save_code(controller: Controller, code: MsgCode, path: str, exemplar: str) -> None:
-    """Save a code as a file in the background."""
-
-    def work(task: Task) -> None:
-        from texlab_core.methods.spectral.codefile import write_code
-
-        write_code(code, path, exemplar)
-
-    controller.once("save-code", work, lambda _: controller.said.emit(f"Saved {path}."))
+def edit_code(column_id: int, code: DataInput, *, final: bool) -> EditInputs:
+    """Return the intention that a column works from a code."""
+    return EditInputs(column_id, (("code", code),), "code", final)

@@ -13,6 +13,7 @@ from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.gabor_pictures import RESIDUAL, GaborAnswer, GaborRequest, Pair, gabor_pictures
 from texlab.docks.spectral.spectra import frequency_area
+from texlab.state.intentions import Open
 from texlab.style.colouring import gray
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
@@ -165,7 +166,7 @@ class GaborDock(FramedDock):
         self.view.setCurrentIndex(self.view.findData("local"))
         self._pair = None
         self._view_changed()
-        self.intention.emit(lambda controller: controller.open_wanted.emit(ZEBRA))
+        self.intention.emit(Open(ZEBRA))
 
     def _click_plane(self, u: float, v: float) -> None:
         if self.view.currentData() == "local":

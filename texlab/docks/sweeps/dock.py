@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,40 +21,25 @@ from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.sweeps.panel import SweepPanel
 from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactSheetView
-from texlab.runs.sweep_run import ShownCell, SweepProgress, SweepRun
-from texlab.runs.worker import Worker
-from texlab.state.changes import with_cell
+from texlab.state.intentions import AskOnce, RunSweep, StopSweep, TakeCell, Tell
+from texlab.state.sweeps import NO_SWEEP
 from texlab.style.numbers import duration, remaining
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
 from texlab_core.sheets.sweep_recipes import bundled_sweeps
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
-from texlab_core.warming import Need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.runs.controller import Controller
-    from texlab.runs.worker import Task
-    from texlab.state.scene import Scene
+    from texlab.state.scene import ColumnScene, Scene
+    from texlab.state.sweeps import ShownCell, SweepScene
     from texlab.style.theme import Theme
-    from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 ZOOM_STEP = 16
-
-
-@dataclass(frozen=True, eq=False)
-class SweepsAnswer:
-    """The column that is offered for a sweep, and the ready-made sweeps of its method."""
-
-    column_id: int
-    method: str
-    params: Params
-    seed: int | None
-    recipes: tuple[SweepRecipe, ...]
 
 
 class SweepsDock(FramedDock):
@@ -70,15 +53,11 @@ class SweepsDock(FramedDock):
 
     def build(self) -> None:
         """Make the controls, the axes and the sheet."""
-        self._worker: Worker | None = None
-        self._column_id = 0
-        self._method = ""
-        self._started_at = 0.0
         self._fits = True
-        self.sweep: Sweep | None = None
+        self._column: ColumnScene | None = None
+        # What is painted at present.
+        self.shown = NO_SWEEP
         self.cells: dict[int, ShownCell] = {}
-        self._origin = 0
-        self._sheet_name = ("sweep", "")
         self._build_line()
         self.panel = SweepPanel(self.name)
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
@@ -112,6 +91,16 @@ class SweepsDock(FramedDock):
             shortcut.activated.connect(act)
         self._show_state()
 
+    @property
+    def sweep(self) -> Sweep | None:
+        """What the cells are of."""
+        return self.shown.sweep
+
+    @property
+    def running(self) -> bool:
+        """Whether cells are being made."""
+        return self.shown.running
+
     def _build_line(self) -> None:
         self.start_button = self.add_button("start", "Start", "Run every cell (Ctrl+Return)", self.start)
         self.stop_button = self.add_button("stop", "Stop", "Stop; the finished cells stay (Esc)", self.stop)
@@ -136,127 +125,81 @@ class SweepsDock(FramedDock):
         """Give the sheet its colours."""
         self.sheet.set_theme(theme)
 
-    # What there is to vary.
+    # What there is to vary, and what came of it.
+
+    def show_scene(self, scene: Scene) -> None:
+        """Offer the chosen column's knobs and show how far the sweep is."""
+        self._column = column = scene.selected
+        if column is not None:
+            self.panel.show_method(find_method(column.method))
+            self.show_body()
+        if scene.sweep is not self.shown:
+            before, self.shown = self.shown, scene.sweep
+            self._show_sweep(is_new=before.number != scene.sweep.number)
+        self._mark(scene)
+        self._show_state()
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the ready-made sweeps of the chosen column's method."""
         column = scene.selected
+        self.why = self.empty
         if column is None:
             return None
-        seed = None if column.result is None or column.result.job is None else column.result.job.seed
+        method = column.method
 
-        def compute(should_stop: Callable[[], bool]) -> SweepsAnswer:
-            return SweepsAnswer(column.id, column.method, column.params, seed, bundled_sweeps(column.method))
+        def compute(should_stop: Callable[[], bool]) -> tuple[str, tuple[SweepRecipe, ...]]:
+            return method, bundled_sweeps(method)
 
-        return Question((self.name, column.id, column.method, column.params, seed), compute)
+        return Question((self.name, method), compute)
 
-    def show_answer(self, answer: SweepsAnswer) -> None:
-        """Offer the column's knobs; what was chosen for its method before comes back."""
-        self._column_id = answer.column_id
-        if answer.method != self._method:
-            self._method = answer.method
-            self.panel.show_method(find_method(answer.method), answer.recipes)
-        self._mark(answer)
-        self._show_state()
+    def show_answer(self, answer: tuple[str, tuple[SweepRecipe, ...]]) -> None:
+        """Offer the ready-made sweeps."""
+        method, recipes = answer
+        if method == self.panel.method:
+            self.panel.show_recipes(recipes)
 
-    # The run.
+    def _show_sweep(self, *, is_new: bool) -> None:
+        shown, sweep = self.shown, self.shown.sweep
+        self.panel.tell_of(shown.asked, shown.problem)
+        if sweep is None:
+            return
+        if is_new:
+            columns = len(sweep.axes[0].values) if len(sweep.axes) == 2 else None
+            count, size = len(sweep.jobs), sweep.base.size
+            if self._fits:
+                # Until the user chooses a size.
+                self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size)))
+            self.sheet.show_grid([setting(sweep, index) for index in range(count)], columns, size)
+            self.heading.setText(" · ".join(sweep_title(sweep)))
+            self.heading.setToolTip(self.heading.text())
+        self.cells = {each.cell.index: each for each in shown.cells}
+        self.sheet.show_cells(self.cells)
+        self.progress.setValue(round(1000 * shown.fraction))
+        self.status.setText(status_text(shown))
 
-    @property
-    def running(self) -> bool:
-        """Whether cells are being made."""
-        return self._worker is not None and self._worker.busy
+    def _show_state(self) -> None:
+        self.start_button.setEnabled(self._column is not None)
+        self.stop_button.setEnabled(self.running)
+        self.progress.setVisible(self.running)
+        self.save_button.setEnabled(bool(self.cells))
+
+    # What the user does.
 
     def start(self) -> None:
         """Run the sweep instead of one that runs."""
-        if self.start_button.isEnabled():
-            self.intention.emit(self._start)
-
-    def _start(self, controller: Controller) -> None:
-        column = controller.session.state.column(self._column_id)
-        exemplar = controller.exemplar
-        if column is None or exemplar is None:
-            self.panel.tell("There is no exemplar yet.")
+        if self._column is None:
             return
         try:
-            sweep = self.panel.plan().sweep(controller.session.state, column, exemplar)
+            plan = self.panel.plan()
         except InputError as error:
             self.panel.tell(str(error))
             return
         self.panel.tell("")
-        recipe = self.panel.chosen_recipe
-        self._sheet_name = ("sweep", "") if recipe is None else (recipe.name, recipe.note)
-        self._origin = column.id
-        self.sweep, self.cells = sweep, {}
-        columns = len(sweep.axes[0].values) if len(sweep.axes) == 2 else None
-        if self._fits:
-            # Until the user chooses a size.
-            self.zoom.setValue(self.sheet.fitting_side(len(sweep.jobs), columns, max(sweep.base.size)))
-        self.sheet.show_grid([setting(sweep, index) for index in range(len(sweep.jobs))], columns, sweep.base.size)
-        title, shared = sweep_title(sweep)
-        self.heading.setText(f"{title} · {shared}")
-        self.heading.setToolTip(self.heading.text())
-        if self._worker is None:
-            self._worker = self._make_worker()
-        self._started_at = time.perf_counter()
-        need, warmth = Need(column.method, exemplar.channels), controller.warmth
-        self._worker.submit(
-            SweepRun(sweep, controller.slots), first=lambda task: warmth.wait(need, task.should_stop)
-        )
-        self._progressed(SweepProgress((), 0.0))
-
-    def _make_worker(self) -> Worker:
-        worker = Worker("sweep", parent=self)
-        worker.progressed.connect(self._progressed)
-        worker.finished.connect(self._finished)
-        worker.failed.connect(self._failed)
-        worker.cancelled.connect(self._cancelled)
-        worker.idle.connect(self._show_state)
-        return worker
+        self.intention.emit(RunSweep(self._column.id, plan))
 
     def stop(self) -> None:
         """Stop; the finished cells stay."""
-        if self._worker is not None and self.running:
-            self._worker.cancel()
-
-    def shut_down(self) -> None:
-        """Stop and join the thread."""
-        if self._worker is not None:
-            self._worker.close()
-
-    def _progressed(self, report: SweepProgress) -> None:
-        self.cells = {shown.cell.index: shown for shown in report.cells}
-        self.sheet.show_cells(self.cells)
-        self.progress.setValue(round(1000 * report.fraction))
-        elapsed = time.perf_counter() - self._started_at
-        left = ""
-        if report.fraction > 0.05:
-            left = f" · about {remaining(elapsed * (1 - report.fraction) / report.fraction)} left"
-        self.status.setText(f"{self._counts()}{left}")
-        self._show_state()
-
-    def _finished(self, report: SweepProgress) -> None:
-        self._progressed(report)
-        self.status.setText(f"{self._counts()} · {duration(time.perf_counter() - self._started_at)}")
-        self._show_state()
-
-    def _failed(self, sentence: str) -> None:
-        self.panel.tell(sentence)
-        self._show_state()
-
-    def _cancelled(self) -> None:
-        self.status.setText(f"{self._counts()} · stopped")
-        self._show_state()
-
-    def _counts(self) -> str:
-        total = 0 if self.sweep is None else len(self.sweep.jobs)
-        failed = sum(shown.picture is None for shown in self.cells.values())
-        return f"{len(self.cells)} of {total}{f' · {failed} failed' if failed else ''}"
-
-    def _show_state(self) -> None:
-        self.start_button.setEnabled(bool(self._method))
-        self.stop_button.setEnabled(self.running)
-        self.progress.setVisible(self.running)
-        self.save_button.setEnabled(bool(self.cells))
+        self.intention.emit(StopSweep())
 
     # The sheet.
 
@@ -268,37 +211,24 @@ class SweepsDock(FramedDock):
         self.zoom.setValue(self.zoom.value() + steps * ZOOM_STEP)
 
     def _take(self, index: int) -> None:
-        cell = self.cells[index].cell
-        wanted = (self._column_id, self._origin)
+        chosen = 0 if self._column is None else self._column.id
+        self.intention.emit(TakeCell(self.cells[index].cell, (chosen, self.shown.column_id)))
 
-        def act(controller: Controller) -> None:
-            session = controller.session
-            found = with_cell(session.state, cell, wanted)
-            if found is None:
-                title = find_method(cell.job.method).title
-                controller.problem.emit(f"No column runs {title} any more; add one to take the parameters.")
-                return
-            state, column_id = found
-            session.apply(state, f"sweep {cell.setting}")
-            session.select(column_id)
-
-        self.intention.emit(act)
-        self.sheet.mark(index)
-
-    def _mark(self, answer: SweepsAnswer) -> None:
+    def _mark(self, scene: Scene) -> None:
         """Mark the cell whose parameters the column has."""
-        if self.sweep is None or self.sweep.base.method != answer.method:
-            self.sheet.mark(None)
-            return
-        is_seed = any(axis.name == "seed" for axis in self.sweep.axes)
-        if is_seed and answer.seed is None:
-            return
-        same = (
-            index
-            for index, job in enumerate(self.sweep.jobs)
-            if job.params == answer.params and (not is_seed or job.seed == answer.seed)
-        )
-        self.sheet.mark(next(same, None))
+        sweep, column = self.sweep, scene.selected
+        found = None
+        if sweep is not None and column is not None and sweep.base.method == column.method:
+            is_seed = any(axis.name == "seed" for axis in sweep.axes)
+            found = next(
+                (
+                    index
+                    for index, job in enumerate(sweep.jobs)
+                    if job.params == column.params and (not is_seed or job.seed == scene.seed)
+                ),
+                None,
+            )
+        self.sheet.mark(found)
 
     def ask_save(self) -> None:
         """Ask where to save the sheet."""
@@ -319,19 +249,33 @@ class SweepsDock(FramedDock):
 
     def save(self, path: str) -> None:
         """Write the sheet, in the background."""
-        sweep, (name, note) = self.sweep, self._sheet_name
+        sweep, plan = self.sweep, self.shown.plan
         cells = [self.cells[index].cell for index in sorted(self.cells)]
-        if sweep is None:
+        if sweep is None or plan is None:
             return
 
-        def work(task: Task) -> str:
-            write_sheet(path, sweep, cells, name=name, note=note)
-            return path
+        def write(should_stop: Callable[[], bool]) -> None:
+            write_sheet(path, sweep, cells, name=plan.name, note=plan.note)
 
-        def act(controller: Controller) -> None:
-            controller.once("sheet", work, lambda saved: controller.said.emit(f"Saved {saved} with its recipe."))
+        def done(_: None) -> None:
+            self.intention.emit(Tell(f"Saved {path} with its recipe."))
 
-        self.intention.emit(act)
+        self.intention.emit(AskOnce("sheet", write, done))
+
+
+def status_text(shown: SweepScene) -> str:
+    """Return how far a sweep is, in words."""
+    total = 0 if shown.sweep is None else len(shown.sweep.jobs)
+    failed = sum(each.picture is None for each in shown.cells)
+    counts = f"{len(shown.cells)} of {total}{f' · {failed} failed' if failed else ''}"
+    if shown.status == "finished":
+        return f"{counts} · {duration(shown.seconds)}"
+    if shown.status == "stopped":
+        return f"{counts} · stopped"
+    if shown.running and shown.fraction > 0.05:
+        left = shown.seconds * (1 - shown.fraction) / shown.fraction
+        return f"{counts} · about {remaining(left)} left"
+    return counts
 
 
 def setting(sweep: Sweep, index: int) -> str:

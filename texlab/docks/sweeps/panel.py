@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox, QGridLayout, QLabel, QScrollArea, QSizePolicy, QWidget
 
 from texlab.docks.sweeps.axis import AxisChoice, AxisEditor
-from texlab.runs.sweep_run import SweepPlan
+from texlab.state.sweeps import SweepPlan
+from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
 
 if TYPE_CHECKING:
@@ -82,22 +84,34 @@ class SweepPanel(QScrollArea):
         layout.addWidget(label, row, 0)
         layout.addWidget(box, row, 1)
 
-    def show_method(self, method: Method, recipes: tuple[SweepRecipe, ...]) -> None:
-        """Offer a method's knobs and ready-made sweeps; what was chosen for it before comes back."""
+    def show_method(self, method: Method) -> None:
+        """Offer a method's knobs; what was chosen for it before comes back."""
+        if method.id == self._method:
+            return
         if self._method:
             self._choices[self._method] = (self.across.choice, self.down.choice)
-        self._method, self._recipes, self._recipe = method.id, recipes, None
+        self._method = method.id
         across, down = self._choices.get(method.id, (None, None))
         self.across.show_method(method.params, across)
         self.down.show_method(method.params, down)
+        self.show_recipes(())
+        self.tell("")
+
+    @property
+    def method(self) -> str:
+        """Id of the method whose knobs are offered, "" before the first."""
+        return self._method
+
+    def show_recipes(self, recipes: tuple[SweepRecipe, ...]) -> None:
+        """Offer the method's ready-made sweeps; none is chosen."""
+        self._recipes, self._recipe = recipes, None
         self.recipe_box.clear()
         self.recipe_box.addItem("own choice" if recipes else "none for this method")
         for place, recipe in enumerate(recipes):
-            self.recipe_box.addItem(recipe.name.removeprefix(f"{method.id}-").replace("-", " "))
+            self.recipe_box.addItem(recipe.name.removeprefix(f"{self._method}-").replace("-", " "))
             self.recipe_box.setItemData(place + 1, f"<qt>{recipe.note}</qt>", Qt.ItemDataRole.ToolTipRole)
         self.recipe_box.setEnabled(bool(recipes))
         self._offer_base()
-        self.tell("")
 
     @property
     def chosen_recipe(self) -> SweepRecipe | None:
@@ -108,7 +122,18 @@ class SweepPanel(QScrollArea):
     def plan(self) -> SweepPlan:
         """Return what was asked for; raises ``InputError`` when it makes no sense."""
         axes = tuple(axis for axis in (self.across.vary(), self.down.vary()) if axis is not None)
-        return SweepPlan(axes, self.side_box.currentData(), self.base_box.currentData())
+        plan = SweepPlan(axes, self.side_box.currentData(), self.base_box.currentData())
+        recipe = self.chosen_recipe
+        return plan if recipe is None else dataclasses.replace(plan, name=recipe.name, note=recipe.note)
+
+    def tell_of(self, plan: SweepPlan | None, sentence: str) -> None:
+        """Show what is wrong with a plan, as long as it is still the one that is shown."""
+        try:
+            mine = self.plan()
+        except InputError:
+            return
+        if sentence and plan == mine:
+            self.tell(sentence)
 
     def tell(self, sentence: str) -> None:
         """Show why nothing can be started; "" takes it away."""

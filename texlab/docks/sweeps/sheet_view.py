@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         QWheelEvent,
     )
 
-    from texlab.runs.sweep_run import ShownCell
+    from texlab.state.sweeps import ShownCell
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
@@ -13,13 +13,13 @@ from texlab.docks.recent import Same
 from texlab.docks.thresholds.distance_view import Distances, DistanceView
 from texlab.docks.thresholds.editor import TableEditor
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view, table_field
+from texlab.state.intentions import EditField
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.docks.thresholds.table import TableView
-    from texlab.runs.controller import Controller
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
@@ -197,17 +197,8 @@ class ThresholdsDock(FramedDock):
         self.editor.settle()
 
     def _edit(self, table: ThresholdTable, final: bool) -> None:
-        if self._column is None:
-            return
-        column_id, field = self._column.id, self._field
-
-        def act(controller: Controller) -> None:
-            column = controller.session.state.column(column_id)
-            if column is not None:
-                changes: dict[str, Any] = {field: table}
-                controller.edit_params(column_id, column.params.replace(**changes), field, final)
-
-        self.intention.emit(act)
+        if self._column is not None:
+            self.intention.emit(EditField(self._column.id, self._field, table, final))
 
     def _value_set(self, value: float) -> None:
         self.editor.set_paint_value(value)

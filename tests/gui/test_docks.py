@@ -1,0 +1,119 @@
+"""What holds for every dock: it follows from the scene alone, whatever happened while nobody looked at it."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, ClassVar
+
+import pytest
+from dock_scenes import column_of, noise, scene_of
+
+from texlab.docks import dock_classes
+from texlab.docks.base import Dock, Question
+from texlab.docks.frame import WORKING
+from texlab.docks.host import DockHost
+from texlab.runs.slots import Slots
+from texlab_core.engine.registry import methods
+from texlab_core.engine.steps import Curve, Map
+
+
+class Endless(Dock):
+    """Computes until it is told to stop."""
+
+    name: ClassVar[str] = "endless"
+    title: ClassVar[str] = "Endless"
+    help: ClassVar[str] = ""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.begun, self.ended = threading.Event(), threading.Event()
+
+    def question(self, scene: Any) -> Question:
+        def compute(should_stop: Any) -> None:
+            self.begun.set()
+            while not should_stop():
+                self.ended.wait(0.001)
+            self.ended.set()
+
+        return Question(("endless",), compute)
+
+
+@pytest.fixture
+def watch(qtbot: Any) -> Any:
+    """Return a function that puts a dock on its host, out of sight; all share one place."""
+    hosts: list[DockHost] = []
+    slots = Slots(1)
+
+    def make(dock: Dock) -> DockHost:
+        qtbot.addWidget(dock)
+        dock.resize(700, 260)
+        hosts.append(DockHost(dock, slots))
+        return hosts[-1]
+
+    make.slots = slots
+    yield make
+    for host in hosts:
+        host.close()
+
+
+def everything() -> Any:
+    """A finished column that shows all there can be, on an exemplar."""
+    image, method = noise(32, 32), methods()["heeger-bergen"]
+    maps = {"count": Map(noise(32, 32, 1)[..., 0], "scalar", "Counts")}
+    curves = {"distance": Curve.of((1.0, 0.5, 0.25), "distance")}
+    return scene_of(
+        column_of(image, method=method.id, params=method.params(), maps=maps, curves=curves),
+        exemplar=noise(32, 32, seed=2),
+    )
+
+
+@pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
+def test_a_dock_that_comes_into_sight_shows_what_there_is(qtbot: Any, watch: Any, kind: Any) -> None:
+    dock = kind()
+    host, scene = watch(dock), everything()
+    assert watch.slots.acquire(lambda: False)
+    # All of this happens while another dock is in front.
+    waiting = scene_of(
+        column_of(None, method="heeger-bergen", params=methods()["heeger-bergen"].params(), status="waiting"),
+        exemplar=noise(32, 32, seed=2),
+    )
+    for each in (scene_of(exemplar=None), waiting, scene):
+        host.show_scene(each)
+    dock.show()
+    qtbot.waitExposed(dock)
+    qtbot.waitUntil(lambda: host._was_seen is True)
+    asks = dock.question(scene) is not None
+    # Somebody else computes: nothing is not what is said of something that is on its way.
+    assert (dock.message in (None, WORKING)) == asks
+    assert not asks or host.busy
+    watch.slots.release()
+    qtbot.waitUntil(lambda: not host.busy)
+    assert (dock.message is None) == asks
+
+
+def test_nobody_waits_for_what_nobody_sees(qtbot: Any, watch: Any) -> None:
+    endless, other = Endless(), dock_classes()[0]()
+    first, second = watch(endless), watch(other)
+    for host in (first, second):
+        host.show_scene(everything())
+    endless.show()
+    qtbot.waitExposed(endless)
+    qtbot.waitUntil(endless.begun.is_set)
+    other.show()
+    qtbot.waitExposed(other)
+    qtbot.waitUntil(lambda: other.message == WORKING)
+    endless.hide()
+    qtbot.waitUntil(lambda: other.message is None)
+    assert endless.ended.is_set()
+    assert not first.busy
+    # What was dropped is asked again.
+    endless.begun.clear()
+    endless.show()
+    qtbot.waitUntil(endless.begun.is_set)
+
+
+@pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
+def test_every_dock_says_what_it_is(kind: Any) -> None:
+    assert kind.name.isidentifier()
+    assert kind.title
+    assert kind.help.endswith(".")

@@ -1,0 +1,186 @@
+"""Intentions without a window: every one is a frozen value and is carried out by the carrier."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+from texlab.state import intentions
+from texlab.state.intentions import (
+    AskOnce,
+    ChooseColumn,
+    EditField,
+    EditInputs,
+    EditParams,
+    FillHoles,
+    Intention,
+    Open,
+    Pin,
+    Point,
+    RunSweep,
+    ShowMarks,
+    StopSweep,
+    TakeCell,
+    Tell,
+)
+from texlab.state.session import Column, Session, State
+from texlab.state.sweeps import SweepPlan
+from texlab.window.carrier import Carrier
+from texlab_core.engine.inputs import DataInput, ImageInput, hash_arrays
+from texlab_core.engine.job import Job
+from texlab_core.engine.registry import methods
+from texlab_core.sheets.sweep import Cell, Vary
+
+HB, EL = methods()["heeger-bergen"], methods()["efros-leung"]
+
+
+class Recorder:
+    """A controller that only notes what it is ordered to do."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.orders: list[tuple[Any, ...]] = []
+        self.said = SimpleNamespace(emit=lambda text: self.orders.append(("said", text)))
+        self.problem = SimpleNamespace(emit=lambda text: self.orders.append(("problem", text)))
+
+    def once(self, name: str, request: Any, done: Any) -> None:
+        done(request(SimpleNamespace(should_stop=lambda: "asked")))
+        self.orders.append(("once", name))
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *args: self.orders.append((name, *args))
+
+
+class Bench:
+    def __init__(self) -> None:
+        self.session = Session()
+        columns = (Column(1, "heeger-bergen", HB.params()), Column(2, "msg", methods()["msg"].params()))
+        self.session.apply(State(None, columns, 5, (24, 32), 3), "start")
+        self.session.select(1)
+        self.session.reset_history()
+        self.controller: Any = Recorder(self.session)
+        self.chosen: list[int] = []
+        self.opened: list[str] = []
+        self.marks: list[Any] = []
+        self.carrier = Carrier(self.controller, self.chosen.append, self.opened.append, self.marks.append)
+
+    def do(self, intention: Intention) -> list[tuple[Any, ...]]:
+        self.carrier.carry_out(intention)
+        return self.controller.orders
+
+
+@pytest.fixture
+def bench(qapp: Any) -> Bench:
+    return Bench()
+
+
+def mask() -> ImageInput:
+    pixels = np.ones((4, 4, 1), np.float32)
+    return ImageInput(pixels, "mask", hash_arrays({"pixels": pixels}))
+
+
+def cell_of(method: str, params: Any, values: dict[str, Any], seed: int = 9) -> Cell:
+    exemplar = ImageInput(np.zeros((32, 32, 3), np.float32), "gray", "0")
+    job = Job(method=method, inputs={"exemplar": exemplar}, params=params, size=(8, 8), seed=seed)
+    return Cell(index=0, job=job, values=values)
+
+
+def test_every_intention_is_a_frozen_value() -> None:
+    known = set(get_args(Intention))
+    declared = {each for each in vars(intentions).values() if dataclasses.is_dataclass(each)}
+    assert known == declared
+    for each in known:
+        assert each.__dataclass_params__.frozen, each
+        assert each.__doc__.endswith(".") or "Parameters" in each.__doc__
+
+
+def test_edits_reach_the_controller_as_they_are(bench: Bench) -> None:
+    params = HB.params(iterations=3)
+    bench.do(EditParams(1, params, "iterations", final=False))
+    code = (("code", DataInput({}, "code", "0")),)
+    bench.do(EditInputs(2, code, "code"))
+    assert bench.controller.orders == [
+        ("edit_params", 1, params, "iterations", False),
+        ("edit_inputs", 2, code, "code", True),
+    ]
+
+
+def test_a_field_is_set_in_what_the_column_has_by_then(bench: Bench) -> None:
+    bench.session.set_params(1, HB.params(scales=2), "scales")
+    assert bench.do(EditField(1, "iterations", 7)) == [
+        ("edit_params", 1, HB.params(scales=2, iterations=7), "iterations", True)
+    ]
+    # The column has gone while the hand was still moving.
+    assert len(bench.do(EditField(99, "iterations", 7))) == 1
+
+
+def test_pixels_and_marks(bench: Bench) -> None:
+    bench.do(Point(1, 3, 4))
+    bench.do(Pin(1, 5, 6))
+    assert bench.controller.orders == [("point_at", 1, 3, 4), ("pin", 1, 5, 6)]
+    marks: Any = ("here",)
+    bench.do(ShowMarks(marks))
+    assert bench.marks == [marks]
+
+
+def test_opening_telling_and_choosing(bench: Bench) -> None:
+    bench.do(Open("gallery:oriented-zebra"))
+    bench.do(ChooseColumn(2))
+    bench.do(Tell("Good."))
+    bench.do(Tell("Bad.", problem=True))
+    assert bench.opened == ["gallery:oriented-zebra"]
+    assert bench.chosen == [2]
+    assert bench.controller.orders == [("said", "Good."), ("problem", "Bad.")]
+
+
+def test_what_is_asked_once_is_told_to_who_asked(bench: Bench) -> None:
+    answers: list[Any] = []
+    assert bench.do(AskOnce("mask", lambda should_stop: should_stop(), answers.append)) == [("once", "mask")]
+    assert answers == ["asked"]
+
+
+def test_sweeps_are_run_and_stopped(bench: Bench) -> None:
+    plan = SweepPlan((Vary("iterations", (1, 2)),), 64)
+    bench.do(RunSweep(1, plan))
+    bench.do(StopSweep())
+    assert bench.controller.orders == [("run_sweep", 1, plan), ("stop_sweep",)]
+
+
+def test_holes_are_filled_in_a_column_of_their_own_then_in_the_same(bench: Bench) -> None:
+    inputs = (("mask", mask()),)
+    bench.do(FillHoles("efros-leung", inputs, (8, 9)))
+    column = bench.session.state.columns[-1]
+    assert (column.method, column.params, column.inputs, column.size) == (
+        "efros-leung",
+        EL.params(),
+        inputs,
+        (8, 9),
+    )
+    bench.session.set_params(column.id, EL.params(window=5), "window")
+    bench.do(FillHoles("efros-leung", inputs, None))
+    assert bench.session.state.columns[-1] == Column(column.id, "efros-leung", EL.params(window=5), inputs, None)
+    assert bench.chosen == [column.id, column.id]
+
+
+def test_a_cell_is_taken_by_the_column_that_is_wanted(bench: Bench) -> None:
+    taken = HB.params(iterations=4)
+    bench.session.add_column("heeger-bergen", HB.params())
+    bench.do(TakeCell(cell_of("heeger-bergen", taken, {"iterations": 4}), (3, 1)))
+    assert [column.params == taken for column in bench.session.state.columns] == [False, False, True]
+    assert (bench.session.state.seed, bench.chosen) == (5, [3])
+    bench.do(TakeCell(cell_of("heeger-bergen", HB.params(), {"seed": 9}), (2,)))
+    assert bench.session.state.column(1).params == HB.params()
+    assert bench.session.state.seed == 9
+
+
+def test_a_cell_that_no_column_can_take_is_said(bench: Bench) -> None:
+    before = bench.session.state
+    bench.do(TakeCell(cell_of("efros-leung", EL.params(), {"window": 5}), (1,)))
+    assert bench.session.state is before
+    assert bench.controller.orders == [
+        ("problem", f"No column runs {EL.title} any more; add one to take the parameters.")
+    ]

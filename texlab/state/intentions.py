@@ -1,0 +1,193 @@
+"""What a dock, a lesson or a script can ask for: frozen values, carried out in one place.
+
+An intention says what is wanted and holds all that is needed for it; who carries it out is not its business.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.state.sweeps import SweepPlan
+    from texlab.style.pictures import Mark
+    from texlab_core.engine.inputs import Input
+    from texlab_core.engine.params import Params
+    from texlab_core.sheets.sweep import Cell
+
+
+@dataclass(frozen=True)
+class EditParams:
+    """Give a column other parameters.
+
+    Parameters
+    ----------
+    column_id
+        The column.
+    params
+        All its parameters; those of another method than the column's are not taken.
+    name
+        What was changed, for the undo menu.
+    final
+        False while a control is dragged: the column draws drafts, and the whole drag is one step of the history.
+    """
+
+    column_id: int
+    params: Params
+    name: str
+    final: bool = True
+
+
+@dataclass(frozen=True)
+class EditField:
+    """Give one parameter of a column another value; the others stay as they are by then."""
+
+    column_id: int
+    field: str
+    value: Any
+    final: bool = True
+
+
+@dataclass(frozen=True)
+class EditInputs:
+    """Give a column other further inputs (a code, a mask); ``final`` as in :class:`EditParams`."""
+
+    column_id: int
+    inputs: tuple[tuple[str, Input], ...]
+    text: str
+    final: bool = True
+
+
+@dataclass(frozen=True)
+class FillHoles:
+    """Fill holes with a method, in the column that filled before or in a new one, and choose that column.
+
+    Parameters
+    ----------
+    method
+        Id of the method.
+    inputs
+        Its mask, and what else it works on.
+    size
+        Height and width of the result; None takes those of the tool bar.
+    """
+
+    method: str
+    inputs: tuple[tuple[str, Input], ...]
+    size: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class ChooseColumn:
+    """Choose a column and bring it into view."""
+
+    column_id: int
+
+
+@dataclass(frozen=True)
+class Point:
+    """Ask about the pixel of a result that is under the pointer; a negative row asks about none."""
+
+    column_id: int
+    row: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Keep asking about a pixel of a result; the same pixel again lets go of it."""
+
+    column_id: int
+    row: int
+    column: int
+
+
+@dataclass(frozen=True)
+class ShowMarks:
+    """Outline these places in the exemplar, and no others."""
+
+    marks: tuple[Mark, ...]
+
+
+@dataclass(frozen=True)
+class Open:
+    """Open a file or a texture of the gallery (``gallery:NAME``)."""
+
+    source: str
+
+
+@dataclass(frozen=True)
+class Tell:
+    """Show one sentence in the window: good news, or a problem."""
+
+    sentence: str
+    problem: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class AskOnce:
+    """Do something once in the background: read a file, write one, make something large.
+
+    Parameters
+    ----------
+    name
+        Of the thread.
+    compute
+        Called in a background thread with a ``should_stop`` function; it must not touch any widget. What it raises
+        is shown as one sentence.
+    done
+        Called with what ``compute`` returned, in the thread of the window.
+    """
+
+    name: str
+    compute: Callable[[Callable[[], bool]], Any]
+    done: Callable[[Any], None]
+
+
+@dataclass(frozen=True)
+class RunSweep:
+    """Run a sweep of a column's method instead of one that runs."""
+
+    column_id: int
+    plan: SweepPlan
+
+
+@dataclass(frozen=True)
+class StopSweep:
+    """Stop the sweep; the finished cells stay."""
+
+
+@dataclass(frozen=True, eq=False)
+class TakeCell:
+    """Give a column the parameters of a cell of a sweep (and its seed, when that was varied), and choose it.
+
+    Parameters
+    ----------
+    cell
+        The cell.
+    wanted
+        Ids of columns by preference; the first with the cell's method takes them, then any other.
+    """
+
+    cell: Cell
+    wanted: tuple[int, ...]
+
+
+Intention = (
+    EditParams
+    | EditField
+    | EditInputs
+    | FillHoles
+    | ChooseColumn
+    | Point
+    | Pin
+    | ShowMarks
+    | Open
+    | Tell
+    | AskOnce
+    | RunSweep
+    | StopSweep
+    | TakeCell
+)

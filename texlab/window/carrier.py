@@ -1,0 +1,114 @@
+"""Carries out what docks, lessons and scripts intend."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from texlab.state.changes import with_cell
+from texlab.state.intentions import (
+    AskOnce,
+    ChooseColumn,
+    EditField,
+    EditInputs,
+    EditParams,
+    FillHoles,
+    Open,
+    Pin,
+    Point,
+    RunSweep,
+    ShowMarks,
+    StopSweep,
+    TakeCell,
+    Tell,
+)
+from texlab_core.engine.registry import find_method
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.runs.controller import Controller
+    from texlab.state.intentions import Intention
+    from texlab.style.pictures import Mark
+
+
+class Carrier:
+    """The one place that turns intentions into changes of the session and orders to the controller.
+
+    Parameters
+    ----------
+    controller
+        Runs and edits columns.
+    choose
+        Chooses a column and brings it into view.
+    open_source
+        Opens a path or a texture of the gallery.
+    show_marks
+        Outlines places in the exemplar.
+    """
+
+    def __init__(
+        self,
+        controller: Controller,
+        choose: Callable[[int], None],
+        open_source: Callable[[str], None],
+        show_marks: Callable[[tuple[Mark, ...]], None],
+    ) -> None:
+        self._controller = controller
+        self._session = controller.session
+        self._choose = choose
+        self._open_source = open_source
+        self._show_marks = show_marks
+
+    def carry_out(self, intention: Intention) -> None:
+        """Do what is intended."""
+        controller, session = self._controller, self._session
+        match intention:
+            case EditParams(column_id, params, name, final):
+                controller.edit_params(column_id, params, name, final)
+            case EditField(column_id, field, value, final):
+                column = session.state.column(column_id)
+                if column is not None:
+                    controller.edit_params(column_id, column.params.replace(**{field: value}), field, final)
+            case EditInputs(column_id, inputs, text, final):
+                controller.edit_inputs(column_id, inputs, text, final)
+            case FillHoles():
+                self._fill(intention)
+            case ChooseColumn(column_id):
+                self._choose(column_id)
+            case Point(column_id, row, place):
+                controller.point_at(column_id, row, place)
+            case Pin(column_id, row, place):
+                controller.pin(column_id, row, place)
+            case ShowMarks(marks):
+                self._show_marks(marks)
+            case Open(source):
+                self._open_source(source)
+            case Tell(sentence, problem):
+                (controller.problem if problem else controller.said).emit(sentence)
+            case AskOnce(name, compute, done):
+                controller.once(name, lambda task: compute(task.should_stop), done)
+            case RunSweep(column_id, plan):
+                controller.run_sweep(column_id, plan)
+            case StopSweep():
+                controller.stop_sweep()
+            case TakeCell():
+                self._take(intention)
+            case _:
+                assert_never(intention)
+
+    def _fill(self, wanted: FillHoles) -> None:
+        session, method = self._session, wanted.method
+        column = next((each for each in session.state.columns if each.method == method), None)
+        params = column.params if column is not None else find_method(method).params()
+        self._choose(session.fill(params, wanted.inputs, wanted.size, method))
+
+    def _take(self, wanted: TakeCell) -> None:
+        cell = wanted.cell
+        found = with_cell(self._session.state, cell, wanted.wanted)
+        if found is None:
+            title = find_method(cell.job.method).title
+            self._controller.problem.emit(f"No column runs {title} any more; add one to take the parameters.")
+            return
+        state, column_id = found
+        self._session.apply(state, f"sweep {cell.setting}")
+        self._choose(column_id)
