@@ -155,3 +155,20 @@ def smooth_spectrum(plane: NDArray[Any]) -> Iterator[tuple[slice, NDArray[np.com
         if rows.start == 0:
             jumps[0, 0] = 0
         yield rows, jumps / laplacian
+
+
+def periodic_spectrum(plane: NDArray[np.float32]) -> Task[NDArray[np.complex64]]:
+    """Return the whole spectrum (H, W) of the periodic part of a plane, not scaled: one transform serves."""
+    width = plane.shape[1]
+    half = yield from rfft2(np.asarray(plane, np.float32), "backward")
+    for rows, part in smooth_spectrum(plane):
+        half[rows] -= part
+        yield part.size
+    spectrum = np.empty(plane.shape, np.complex64)
+    spectrum[:, : half.shape[1]] = half
+    yield half.size
+    # Negative frequencies mirror the positive ones through the origin.
+    mirror = half[:, (width - 1) // 2 : 0 : -1]
+    np.conjugate(mirror[0], out=spectrum[0, half.shape[1] :])
+    np.conjugate(mirror[:0:-1], out=spectrum[1:, half.shape[1] :])
+    return spectrum

@@ -1,0 +1,234 @@
+"""Every measure, declared once: columns, sweeps, sheets, ``--json`` and recipes all ask here."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import importlib
+import importlib.metadata
+import logging
+import math
+import pkgutil
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from texlab_core.errors import ParamError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from texlab_core.measures.subject import Subject
+
+log = logging.getLogger(__name__)
+
+Better = Literal["lower", "higher", "neither"]
+Need = Literal["exemplar", "source", "curves", "model", "method"]
+# Installed packages add measures of their own by entry points of this group; each names a module.
+ENTRY_POINTS = "texlab_core.measures"
+OWN_PACKAGE = "texlab"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
+    """One number about a result.
+
+    Parameters
+    ----------
+    id
+        Lower-case words with hyphens: its name in JSON, recipes and tables.
+    title
+        For people, short enough for a column ("copied").
+    summary
+        One or two sentences: what it says, and what its ends mean.
+    unit
+        Unit of the values, empty for plain numbers and shares.
+    better
+        Which end is the better one, where there is a better one.
+    low, high
+        Every value lies in ``low <= value <= high``.
+    needs
+        What of the subject it reads besides the image. ``method``: only the method itself can say it, so that it
+        is read from what the method says and never computed.
+    function
+        ``function(subject)`` returns the number, or None where the subject lacks what it takes (too small, no
+        contrast). A pure function of the subject; calls ``subject.look()`` at least every few milliseconds. None
+        for measures that need ``method``.
+    form
+        Format of the number, as in ``format(value, form)``: the only way it is written anywhere.
+    reference
+        Where it comes from.
+    part_of
+        Id of the measure that it is a group of; shown on demand.
+    live
+        Fast enough to follow a slider, in the worker.
+    order
+        Place in lists; the first ones are shown large.
+    package
+        Who declares it; filled in on registration.
+    """
+
+    id: str
+    title: str
+    summary: str
+    low: float
+    high: float
+    better: Better
+    needs: tuple[Need, ...]
+    function: Callable[[Subject], float | None] | None = None
+    unit: str = ""
+    form: str = ".3g"
+    reference: str = ""
+    part_of: str = ""
+    live: bool = False
+    order: int = 100
+    package: str = OWN_PACKAGE
+
+    def __post_init__(self) -> None:
+        if (self.function is None) != ("method" in self.needs):
+            raise ValueError(f"Measure {self.id}: either a function or the need 'method', not both.")
+        if not self.low < self.high:
+            raise ValueError(f"Measure {self.id}: its range must not be empty, got {self.low:g} to {self.high:g}.")
+
+    def of(self, subject: Subject) -> float | None:
+        """Return the number, or None where the subject lacks what it needs.
+
+        Raises
+        ------
+        Cancelled
+            When ``subject.look`` says so.
+        """
+        if self.function is None:
+            value = subject.given.get(self.id)
+        else:
+            value = self.function(subject) if subject.has(self.needs) else None
+        if value is None or not math.isfinite(value):
+            return None
+        return min(max(float(value), self.low), self.high)
+
+    def text(self, value: float) -> str:
+        """Return the number as it is written everywhere, with its unit."""
+        written = format(value, self.form)
+        # No sign before what is written as zero.
+        if written.startswith("-") and not written.strip("-0.%e+"):
+            written = written[1:]
+        return f"{written} {self.unit}" if self.unit else written
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A measure that could not be loaded.
+
+    Parameters
+    ----------
+    package
+        The installed package that it comes from.
+    module
+        What was to be imported.
+    reason
+        The error, one line.
+    """
+
+    package: str
+    module: str
+    reason: str
+
+
+class _Shelf:
+    """What was registered so far, and by whom the next ones are."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Measure] = {}
+        self.failures: list[Failure] = []
+
+
+_SHELF = _Shelf()
+
+
+def register(measure: Measure) -> Measure:
+    """Add a measure; a second one with the same id is a programming error."""
+    if measure.id in _SHELF.found:
+        raise RuntimeError(f"A measure with the id {measure.id!r} is registered already.")
+    _SHELF.found[measure.id] = measure
+    return measure
+
+
+@functools.cache
+def measures() -> Mapping[str, Measure]:
+    """Return every registered measure by id, in their order.
+
+    Imports all files of ``measures/`` once, then those of other packages that have an entry point of the group
+    ``texlab_core.measures``. What cannot be imported is left out, logged and listed by :func:`failures`.
+    """
+    package = importlib.import_module("texlab_core.measures")
+    for each in pkgutil.iter_modules(package.__path__):
+        if not each.name.startswith("_"):
+            _load(OWN_PACKAGE, f"{package.__name__}.{each.name}")
+    for point in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda point: point.value):
+        _load(point.dist.name if point.dist is not None else point.value, point.value)
+    ordered = sorted(_SHELF.found.values(), key=lambda measure: (measure.order, measure.id))
+    return MappingProxyType({measure.id: measure for measure in ordered})
+
+
+def failures() -> tuple[Failure, ...]:
+    """Return what could not be loaded."""
+    measures()
+    return tuple(_SHELF.failures)
+
+
+def _load(package: str, module: str) -> None:
+    """Import a module; what it registered before it failed is taken back."""
+    before = dict(_SHELF.found)
+    try:
+        importlib.import_module(module.partition(":")[0])
+    except Exception as error:
+        _SHELF.found = before
+        reason = " ".join(str(error).split()) or type(error).__name__
+        _SHELF.failures.append(Failure(package, module, reason))
+        log.warning("Measures of %s are left out: %s cannot be loaded (%s).", package, module, reason)
+        return
+    for name in _SHELF.found.keys() - before.keys():
+        object.__setattr__(_SHELF.found[name], "package", package)
+
+
+def find_measure(name: str) -> Measure:
+    """Return the measure with this id.
+
+    Raises
+    ------
+    ParamError
+        When there is none; the message lists the ids.
+    """
+    known = measures()
+    if isinstance(name, str) and name in known:
+        return known[name]
+    close = difflib.get_close_matches(str(name), known, n=1)
+    hint = f" (did you mean {close[0]}?)" if close else ""
+    raise ParamError("measure", f"one of {', '.join(known)}{hint}", name)
+
+
+def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str, float]:
+    """Return the numbers about a subject by id, in the registry's order.
+
+    Parameters
+    ----------
+    subject
+        What to measure.
+    ids
+        Which measures; None takes all. Those that the subject lacks something for are left out.
+
+    Raises
+    ------
+    ParamError
+        When an id is unknown.
+    Cancelled
+        When ``subject.look`` says so.
+    """
+    wanted = None if ids is None else {find_measure(each).id for each in ids}
+    found: dict[str, float] = {}
+    for measure in measures().values():
+        if wanted is None or measure.id in wanted:
+            value = measure.of(subject)
+            if value is not None:
+                found[measure.id] = value
+    return found
