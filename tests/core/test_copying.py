@@ -22,9 +22,9 @@ def brute_share(source: np.ndarray) -> float:
             for step in ((0, 1), (1, 0)):
                 if row + step[0] < height and column + step[1] < width:
                     here, there = source[row, column], source[row + step[0], column + step[1]]
-                    pairs += 1
+                    pairs += here[0] >= 0 and there[0] >= 0
                     found += here[0] >= 0 and there[0] >= 0 and tuple(there - here) == step
-    return found / pairs if pairs else 1.0
+    return found / pairs if pairs else float((source[..., 0] >= 0).any())
 
 
 def brute_areas(source: np.ndarray) -> set[frozenset[int]]:

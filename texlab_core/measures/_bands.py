@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.work.tasks import finish
 from texlab_core.transforms import fourier
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

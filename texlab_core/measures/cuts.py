@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.measures.subject import Subject
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.measures.subject import Subject
 
 Axis = Literal["row", "column"]
 Part = Literal["whole", "first half", "second half"]

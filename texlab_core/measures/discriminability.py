@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.measures.subject import Subject
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.measures.subject import Subject
 
 BLOCK = 32
 STEP = 8
@@ -121,10 +121,12 @@ def _sums(running: NDArray[np.float64], length: int, starts: NDArray[np.int64]) 
     samples = len(running) - 1
 
     def up_to(pixel: NDArray[np.int64]) -> NDArray[np.float64]:
-        place = pixel * (samples / length)
-        whole = np.minimum(place.astype(np.int64), samples - 1)
-        part = (place - whole)[:, None]
-        return np.asarray(running[whole] * (1 - part) + running[whole + 1] * part)
+        whole, part = np.divmod(pixel * samples, length)
+        sums = running[whole]
+        if part.any():
+            following = running[np.minimum(whole + 1, samples)]
+            sums = sums + (following - sums) * (part / length)[:, None]
+        return np.asarray(sums)
 
     return np.asarray((up_to(starts + BLOCK) - up_to(starts)) * (length / samples))
 
@@ -133,8 +135,8 @@ def magnitude_lags(magnitude: NDArray[np.float32]) -> NDArray[np.float64]:
     """Return the autocorrelation (9, 9) of standardized values by lag 0 .. 4, -4 .. -1, over all pairs in each."""
     from scipy import fft
 
-    values = magnitude - magnitude.mean(dtype=np.float64)
-    values /= max(float(np.sqrt(np.mean(np.square(values), dtype=np.float64))), 1e-6)
+    values = magnitude - np.float32(magnitude.mean(dtype=np.float64))
+    values /= np.float32(max(math.sqrt(float(np.mean(np.square(values), dtype=np.float64))), 1e-6))
     # Zeros as wide as the largest lag keep opposite borders apart.
     shape = tuple(fft.next_fast_len(side + LAGS, real=True) for side in values.shape)
     spectrum = fft.rfft2(values, s=shape)

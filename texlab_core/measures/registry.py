@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from texlab_core.engine.registry import methods
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 Better = Literal["lower", "higher", "neither"]
-Need = Literal["exemplar", "source", "curves", "model", "method"]
+Need = Literal["exemplar", "source", "counts", "curves", "model", "method"]
 # Installed packages add measures of their own by entry points of this group; each names a module.
 ENTRY_POINTS = "texlab_core.measures"
 OWN_PACKAGE = "texlab"
@@ -48,8 +49,8 @@ class Measure:
     low, high
         Every value lies in ``low <= value <= high``.
     needs
-        What of the subject it reads besides the image. ``method``: only the method itself can say it, so that it
-        is read from what the method says and never computed.
+        What of the subject it reads besides the image: its exemplar, the map of sources, of counts, curves, the
+        model. ``method``: only the method itself can say it, so that it is never computed here.
     function
         ``function(subject)`` returns the number, or None where the subject lacks what it takes (too small, no
         contrast). A pure function of the subject; calls ``subject.look()`` at least every few milliseconds. None
@@ -62,6 +63,8 @@ class Measure:
         Id of the measure that it is a group of; shown on demand.
     live
         Fast enough to follow a slider, in the worker.
+    slow
+        Takes longer than many a synthesis, so that it is only computed when it is asked for by name.
     order
         Place in lists; the first ones are shown large.
     package
@@ -81,6 +84,7 @@ class Measure:
     reference: str = ""
     part_of: str = ""
     live: bool = False
+    slow: bool = False
     order: int = 100
     package: str = OWN_PACKAGE
 
@@ -98,10 +102,9 @@ class Measure:
         Cancelled
             When ``subject.look`` says so.
         """
-        if self.function is None:
-            value = subject.given.get(self.id)
-        else:
-            value = self.function(subject) if subject.has(self.needs) else None
+        value = subject.given.get(self.id)
+        if value is None and self.function is not None and subject.has(self.needs):
+            value = self.function(subject)
         if value is None or not math.isfinite(value):
             return None
         return min(max(float(value), self.low), self.high)
@@ -153,26 +156,32 @@ def register(measure: Measure) -> Measure:
     return measure
 
 
-@functools.cache
 def measures() -> Mapping[str, Measure]:
     """Return every registered measure by id, in their order.
 
-    Imports all files of ``measures/`` once, then those of other packages that have an entry point of the group
-    ``texlab_core.measures``. What cannot be imported is left out, logged and listed by :func:`failures`.
+    All files of ``measures/`` are imported, then those of other packages that have an entry point of the group
+    ``texlab_core.measures``, and the methods, which declare what only they can say. What cannot be imported is
+    left out, logged and listed by :func:`failures`.
     """
+    _discover()
+    ordered = sorted(_SHELF.found.values(), key=lambda measure: (measure.order, measure.id))
+    return MappingProxyType({measure.id: measure for measure in ordered})
+
+
+@functools.cache
+def _discover() -> None:
     package = importlib.import_module("texlab_core.measures")
     for each in pkgutil.iter_modules(package.__path__):
         if not each.name.startswith("_"):
             _load(OWN_PACKAGE, f"{package.__name__}.{each.name}")
     for point in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda point: point.value):
         _load(point.dist.name if point.dist is not None else point.value, point.value)
-    ordered = sorted(_SHELF.found.values(), key=lambda measure: (measure.order, measure.id))
-    return MappingProxyType({measure.id: measure for measure in ordered})
+    methods()
 
 
 def failures() -> tuple[Failure, ...]:
     """Return what could not be loaded."""
-    measures()
+    _discover()
     return tuple(_SHELF.failures)
 
 
@@ -215,7 +224,7 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
     subject
         What to measure.
     ids
-        Which measures; None takes all. Those that the subject lacks something for are left out.
+        Which measures; None takes all but the slow ones. Those that the subject lacks something for are left out.
 
     Raises
     ------
@@ -227,7 +236,7 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
     wanted = None if ids is None else {find_measure(each).id for each in ids}
     found: dict[str, float] = {}
     for measure in measures().values():
-        if wanted is None or measure.id in wanted:
+        if measure.id in wanted if wanted is not None else not measure.slow:
             value = measure.of(subject)
             if value is not None:
                 found[measure.id] = value

@@ -7,10 +7,10 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from texlab_core.engine.cache import array_bytes
+from texlab_core.engine.inputs import ImageInput
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.engine.inputs import ImageInput
-from texlab_core.engine.cache import array_bytes
 from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.images.exemplar import Source
     from texlab_core.engine.result import Result
-    from texlab_core.engine.steps import Curve, FloatImage, Map
+    from texlab_core.engine.steps import Curve, FloatImage, Map, MapKind
+    from texlab_core.images.exemplar import Source
 
 ValueT = TypeVar("ValueT")
 
@@ -149,6 +149,7 @@ class Subject:
         there = {
             "exemplar": self.exemplar is not None,
             "source": self.source is not None,
+            "counts": self.first_map("count") is not None,
             "curves": bool(self.curves),
             "model": self.model is not None,
             "method": bool(self.given),
@@ -158,11 +159,15 @@ class Subject:
     @property
     def source(self) -> NDArray[np.int32] | None:
         """(H, W, 2) int32: row and column in the exemplar of every pixel, if the method says so."""
-        for each in self.maps.values():
-            if each.kind == "source":
-                found: NDArray[np.int32] = each.data
-                return found
-        return None
+        return self.first_map("source")
+
+    def first_map(self, kind: MapKind) -> NDArray[Any] | None:
+        """Return the data of the first map of a kind; None without one."""
+        # One by one: some maps are only computed when they are looked at.
+        return self.once(
+            f"map {kind}",
+            lambda: next((each.data for each in map(self.maps.__getitem__, self.maps) if each.kind == kind), None),
+        )
 
     @property
     def pixels(self) -> FloatImage:

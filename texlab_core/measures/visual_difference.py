@@ -10,16 +10,16 @@ import numpy as np
 
 from texlab_core.measures.registry import Measure, register
 from texlab_core.stats.spectrum import gray_plane
-from texlab_core.work.tasks import finish
 from texlab_core.transforms import fourier
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from texlab_core.measures.subject import Subject
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.measures.subject import Subject
 
 SMALLEST = 8
 # Half a gray level of 255: what scatters less is one flat piece.
@@ -33,7 +33,7 @@ class Correlator:
     Parameters
     ----------
     spectrum
-        (h, w // 2 + 1) complex64 of the luminance without its mean, scaled by 1 / pixels.
+        (h, w) complex64 of the luminance without its mean.
     scatter
         (h, w) float32: 1 / standard deviation under a window that begins there; 0 where it is flat.
     flat
@@ -50,25 +50,38 @@ class Correlator:
     size: tuple[int, int]
     window: tuple[int, int]
 
-    def largest(self, patch: NDArray[np.float32], look: Callable[[], None]) -> float:
-        """Return the largest correlation (-1 .. 1) of a window of luminance with any place of the exemplar.
+    def largest(self, patches: Sequence[NDArray[np.float32]], look: Callable[[], None]) -> list[float]:
+        """Return the largest correlation, 0 .. 1, of each window of luminance with any place of the exemplar.
 
         A flat window matches a flat place with 1 and everything else with 0.
         """
-        values = patch - np.float32(patch.mean(dtype=np.float64))
-        deviation = math.sqrt(float(np.mean(np.square(values), dtype=np.float64)))
-        if deviation < FLAT:
-            return 1.0 if self.flat else 0.0
-        padded = np.zeros(self.size, np.float32)
-        padded[: patch.shape[0], : patch.shape[1]] = values
-        product = finish(fourier.rfft2(padded), look)
+        found: list[float] = []
+        # Two real windows share a complex transform.
+        for first in range(0, len(patches), 2):
+            found += self._pair(patches[first : first + 2], look)
+        return found
+
+    def _pair(self, patches: Sequence[NDArray[np.float32]], look: Callable[[], None]) -> list[float]:
+        padded = np.zeros(self.size, np.complex64)
+        parts = padded.real, padded.imag
+        deviations = []
+        for patch, part, sign in zip(patches, parts, (1, -1), strict=False):
+            values = patch - np.float32(patch.mean(dtype=np.float64))
+            deviations.append(math.sqrt(float(np.mean(np.square(values), dtype=np.float64))))
+            part[: patch.shape[0], : patch.shape[1]] = np.float32(sign) * values
+        product = finish(fourier.fft2(padded), look)
         np.conjugate(product, out=product)
         product *= self.spectrum
-        covariance = finish(fourier.irfft2(product, self.size), look)
-        covariance *= self.scatter
-        # Both transforms are scaled by 1 / pixels; a covariance is a mean over the window.
-        scale = math.prod(self.size) / (math.prod(self.window) * deviation)
-        return min(float(covariance.max()) * scale, 1.0)
+        covariance = finish(fourier.ifft2(product), look)
+        found = []
+        for deviation, part in zip(deviations, (covariance.real, covariance.imag), strict=False):
+            if deviation < FLAT:
+                found.append(1.0 if self.flat else 0.0)
+                continue
+            largest = float((part * self.scatter).max())
+            found.append(min(max(largest / (math.prod(self.window) * deviation), 0.0), 1.0))
+            look()
+        return found
 
 
 def correlator(pixels: FloatImage, window: tuple[int, int], look: Callable[[], None]) -> Correlator:
@@ -76,7 +89,7 @@ def correlator(pixels: FloatImage, window: tuple[int, int], look: Callable[[], N
     gray = gray_plane(pixels)
     look()
     plane = gray - np.float32(gray.mean(dtype=np.float64))
-    spectrum = finish(fourier.rfft2(plane), look).astype(np.complex64)
+    spectrum = np.asarray(finish(fourier.fft2(plane), look), np.complex64)
     mean, square = (_window_means(each, window, look) for each in (plane, np.square(plane, dtype=np.float64)))
     deviation = np.sqrt(np.maximum(square - np.square(mean), 0))
     flat = deviation < FLAT
@@ -123,7 +136,7 @@ def visual_difference(subject: Subject) -> float | None:
     if not exemplar.scatter.any():
         return None
     gray = subject.once("gray", lambda: gray_plane(subject.image))
-    found = [max(exemplar.largest(gray[place], subject.look), 0.0) for place in windows(image, window)]
+    found = exemplar.largest([gray[place] for place in windows(image, window)], subject.look)
     return 1 - math.fsum(found) / len(found)
 
 
@@ -137,11 +150,12 @@ def laid_down_share(subject: Subject) -> float | None:
     if not exemplar.scatter.any():
         return None
     gray = subject.once("gray", lambda: gray_plane(subject.image))
-    found = []
-    for row in range(0, image[0] - block[0] + 1, block[0]):
-        for column in range(0, image[1] - block[1] + 1, block[1]):
-            patch = gray[row : row + block[0], column : column + block[1]]
-            found.append(max(exemplar.largest(patch, subject.look), 0.0))
+    blocks = [
+        gray[row : row + block[0], column : column + block[1]]
+        for row in range(0, image[0] - block[0] + 1, block[0])
+        for column in range(0, image[1] - block[1] + 1, block[1])
+    ]
+    found = exemplar.largest(blocks, subject.look)
     return math.fsum(found) / len(found)
 
 
