@@ -13,6 +13,7 @@ from texlab_core.engine.inputs import ArraysInput
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.measures.copying import continuous_share
 from texlab_core.methods.efros_leung import growth as growth_module
 from texlab_core.methods.efros_leung.draft import draft
 from texlab_core.methods.efros_leung.explain import explain
@@ -213,11 +214,17 @@ def test_verbatim_copies_are_measured() -> None:
     )
     exact = result.maps["distance"].data == 0
     filled = result.maps["order"].data > 0
-    assert result.measures["copied-share"] == (exact & filled).sum() / filled.sum()
+    assert result.measures["exact-share"] == (exact & filled).sum() / filled.sum()
+    source = result.maps["source"].data
+    assert result.measures["copied-share"] == continuous_share(source)
+    assert (
+        result.measures["garbage"] == result.measures["window-distance"] / result.measures["own-window-distance"]
+    )
     labels = result.maps["copied"].data
     largest = result.maps["source"].data[labels == 1] - np.argwhere(labels == 1)
     assert (largest == largest[0]).all()
-    assert result.measures["largest-copy"] == (labels == 1).sum() / filled.sum()
+    # The seed was copied too.
+    assert result.measures["largest-copy"] == (labels == 1).sum() / labels.size
     assert result.curves["distance"].x[-1] == filled.sum()
 
 

@@ -87,7 +87,7 @@ def test_chosen_measures_come_in_the_registrys_order() -> None:
     assert list(found) == ["visual-difference", "cuts"]
     with pytest.raises(ParamError, match="did you mean cuts"):
         measure_all(subject, ["cut"])
-    with pytest.raises(ParamError, match="one of discriminability"):
+    with pytest.raises(ParamError, match="one of parameters, discriminability"):
         find_measure(3)  # type: ignore[arg-type]
 
 

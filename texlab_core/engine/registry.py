@@ -67,6 +67,8 @@ class Method:
         Parameters with which a tiny run needs compiled code that a run with the defaults does not.
     order
         Place in lists and in the first columns of the window.
+    measures
+        Ids of the registered measures that its outputs carry.
     random
         False when no bit of the result depends on the seed.
     """
@@ -84,6 +86,7 @@ class Method:
     draft: Callable[..., FloatImage] | None = None
     rehearsals: tuple[Params, ...] = ()
     order: int = 100
+    measures: tuple[str, ...] = ()
     random: bool = True
 
 

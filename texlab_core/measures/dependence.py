@@ -13,7 +13,7 @@ import numpy as np
 
 from texlab_core.measures._bands import ORIENTATIONS, oriented_bands
 from texlab_core.measures.registry import Measure, register
-from texlab_core.stats.spectrum import gray_plane
+from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,7 +52,7 @@ def _eighths(values: NDArray[np.floating]) -> NDArray[np.int64]:
 def child_and_parent(image: FloatImage, look: Callable[[], None]) -> NDArray[np.float64]:
     """Return the joint histograms (4, 8, 8) of the finest magnitudes with their parents, by orientation."""
     magnitudes: dict[tuple[int, int], NDArray[np.float32]] = {}
-    for octave, orientation, band in oriented_bands(gray_plane(image), 2, look):
+    for octave, orientation, band in oriented_bands(luma(image), 2, look):
         look()
         magnitudes[octave, orientation] = np.abs(band)
     height, width = image.shape[:2]

@@ -14,7 +14,7 @@ import numpy as np
 
 from texlab_core.measures._bands import oriented_bands
 from texlab_core.measures.registry import Measure, register
-from texlab_core.stats.spectrum import gray_plane
+from texlab_core.transforms.luma import luma
 from texlab_core.work.tasks import go_on, row_blocks
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def looks(image: FloatImage, look: Callable[[], None]) -> Looks:
     size = image.shape[:2]
     starts = block_starts(size)
     lags, features = [], []
-    for octave, _, band in oriented_bands(gray_plane(image), OCTAVES, look):
+    for octave, _, band in oriented_bands(luma(image), OCTAVES, look):
         energy = np.square(band.real)
         energy += np.square(band.imag)
         look()

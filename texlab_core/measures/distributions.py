@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from texlab_core.measures.registry import Measure, register
 from texlab_core.stats.distances import w1_sorted
-from texlab_core.stats.spectrum import gray_plane
+from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -75,11 +75,11 @@ def band_distances(subject: Subject) -> tuple[float, ...] | None:
     levels = min(LEVELS, *(most_levels(each.shape[:2], "steerable") for each in (subject.image, subject.pixels)))
 
     def prepare(pixels: FloatImage, look: Callable[[], None]) -> tuple[tuple[Sample, ...], float]:
-        gray = gray_plane(pixels)
+        gray = luma(pixels)
         return tuple(_bands(gray, levels, look)), float(gray.std(dtype=np.float64))
 
     own, whole = subject.prepared(f"sorted bands {levels}", prepare)
-    gray = subject.once("gray", lambda: gray_plane(subject.image))
+    gray = subject.once("gray", lambda: luma(subject.image))
     if whole == 0:
         return None
     distances = []

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.measures.registry import Measure, register
-from texlab_core.stats.spectrum import gray_plane
 from texlab_core.transforms import fourier
+from texlab_core.transforms.luma import luma
 from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class Correlator:
 
 def correlator(pixels: FloatImage, window: tuple[int, int], look: Callable[[], None]) -> Correlator:
     """Prepare an exemplar (H, W, C) for windows of a size, at most its own."""
-    gray = gray_plane(pixels)
+    gray = luma(pixels)
     look()
     plane = gray - np.float32(gray.mean(dtype=np.float64))
     spectrum = np.asarray(finish(fourier.fft2(plane), look), np.complex64)
@@ -135,7 +135,7 @@ def visual_difference(subject: Subject) -> float | None:
     exemplar = subject.prepared(name, lambda pixels, look: correlator(pixels, window, look))
     if not exemplar.scatter.any():
         return None
-    gray = subject.once("gray", lambda: gray_plane(subject.image))
+    gray = subject.once("gray", lambda: luma(subject.image))
     found = exemplar.largest([gray[place] for place in windows(image, window)], subject.look)
     return 1 - math.fsum(found) / len(found)
 
@@ -149,7 +149,7 @@ def laid_down_share(subject: Subject) -> float | None:
     exemplar = subject.prepared("correlator whole", lambda pixels, look: correlator(pixels, block, look))
     if not exemplar.scatter.any():
         return None
-    gray = subject.once("gray", lambda: gray_plane(subject.image))
+    gray = subject.once("gray", lambda: luma(subject.image))
     blocks = [
         gray[row : row + block[0], column : column + block[1]]
         for row in range(0, image[0] - block[0] + 1, block[0])

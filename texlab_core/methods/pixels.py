@@ -71,5 +71,6 @@ register(
         synthesize=synthesize,
         fails_on=("everything but white noise",),
         order=201,
+        measures=("copied-share",),
     )
 )

@@ -85,5 +85,6 @@ register(
         fails_on=("everything that does not repeat with the exemplar's own size",),
         order=200,
         random=False,
+        measures=("copied-share",),
     )
 )

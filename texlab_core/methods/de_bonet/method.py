@@ -272,5 +272,6 @@ register(
         # Sets of candidates that are never listed as a whole.
         rehearsals=(DeBonetParams(alpha=4.0),),
         order=20,
+        measures=("copied-share", "median-candidates", "largest-copy"),
     )
 )

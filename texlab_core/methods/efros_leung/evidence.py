@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from texlab_core.engine.steps import Curve, Map, Output, Step
-from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps
+from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps, largest_copy
+from texlab_core.methods.efros_leung.told import DISTANCE, EXACT_SHARE, GARBAGE, OWN_DISTANCE
 from texlab_core.work.tasks import through
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def report(
     image = np.empty((height, width, exemplar.channels), np.float32)
     source = np.empty((height, width, 2), np.int32)
     order = np.empty((height, width), np.float32)
-    tally = _Tally(int(canvas.order.max(initial=0)), exemplar.size)
+    tally = _Tally(int(canvas.order.max(initial=0)))
     rows = max(1, _PIXELS_AT_ONCE // width)
     for first in range(0, height, rows):
         part = slice(first, first + rows)
@@ -61,13 +62,11 @@ def report(
         if given is not None:
             image[part] = np.where(places[..., None] < 0, given[part], image[part])
         order[part] = canvas.order[part]
-        tally.add(canvas.order[part], canvas.d_min[part], places)
+        tally.add(canvas.order[part], canvas.d_min[part])
         yield step
-    # Only what was filled counts as copied: what was given is no work of the method.
-    copied = np.where(order[..., None] > 0, source, np.int32(-1))
-    yield step
-    labels, sizes = yield from through(copied_regions_steps(copied), step)
-    continuity = yield from through(continuous_share_steps(copied), step)
+    # What was given has no source, and is no work of the method.
+    labels, sizes = yield from through(copied_regions_steps(source), step)
+    continuity = yield from through(continuous_share_steps(source), step)
     unit = UNITS[grown.matching.criterion]
     return Output(
         image=image,
@@ -79,24 +78,23 @@ def report(
             "copied": Map(labels, "label", "Areas copied in one piece"),
         },
         curves=_curves(tally, levels, unit),
-        measures=_measures(tally, levels) | _copying(order > 0, continuity, sizes),
+        measures=_measures(tally, levels) | _copying(source, continuity, sizes),
         notes=_notes(grown),
         details=grown,
     )
 
 
 class _Tally:
-    """Sums over the filled pixels, row by row: d_min along the order of filling, copies, sources used."""
+    """Sums over the filled pixels, row by row: d_min along the order of filling, exact matches."""
 
-    def __init__(self, last: int, exemplar: tuple[int, int]) -> None:
+    def __init__(self, last: int) -> None:
         self.last = last
         self.bins = min(_BINS, last)
         self.counts = np.zeros(self.bins, np.int64)
         self.sums = np.zeros(self.bins)
         self.exact = 0
-        self.used = np.zeros(exemplar[0] * exemplar[1], bool)
 
-    def add(self, order: NDArray[np.int32], distances: NDArray[np.float32], places: NDArray[np.int32]) -> None:
+    def add(self, order: NDArray[np.int32], distances: NDArray[np.float32]) -> None:
         filled = order > 0
         if not filled.any():
             return
@@ -104,7 +102,6 @@ class _Tally:
         self.counts += np.bincount(bins, minlength=self.bins)
         self.sums += np.bincount(bins, weights=distances[filled], minlength=self.bins)
         self.exact += int(np.count_nonzero(distances[filled] == 0))
-        self.used[places[filled]] = True
 
     @property
     def filled(self) -> int:
@@ -136,33 +133,23 @@ def _curves(tally: _Tally, levels: NDArray[np.float32], unit: str) -> dict[str, 
 
 
 def _measures(tally: _Tally, levels: NDArray[np.float32]) -> dict[str, float]:
-    """Return copying (d_min = 0) and doubt (d_min over the exemplar's own level, repetition of sources)."""
+    """Return how far the windows were from the exemplar's, alone and against the exemplar's own level."""
     measures: dict[str, float] = {}
     if levels.size:
-        measures["leave-one-out"] = float(levels.mean(dtype=np.float64))
+        measures[OWN_DISTANCE.id] = float(levels.mean(dtype=np.float64))
     if not tally.filled:
         return measures
-    measures["copied-share"] = tally.exact / tally.filled
-    measures["distance"] = float(tally.sums.sum() / tally.filled)
-    measures["source-repetition"] = tally.filled / int(np.count_nonzero(tally.used))
-    level = measures.get("leave-one-out", 0.0)
+    measures[EXACT_SHARE.id] = tally.exact / tally.filled
+    measures[DISTANCE.id] = float(tally.sums.sum() / tally.filled)
+    level = measures.get(OWN_DISTANCE.id, 0.0)
     if level > 0:
-        measures["distance-over-level"] = measures["distance"] / level
+        measures[GARBAGE.id] = measures[DISTANCE.id] / level
     return measures
 
 
-def _copying(filled: NDArray[np.bool_], continuity: float, sizes: NDArray[np.int64]) -> dict[str, float]:
-    """Return how much of what was filled continues its neighbour, and the largest area copied in one piece."""
-    height, width = filled.shape
-    pairs = np.count_nonzero(filled[1:] & filled[:-1]) + np.count_nonzero(filled[:, 1:] & filled[:, :-1])
-    if pairs == 0:
-        return {}
-    all_pairs = (height - 1) * width + height * (width - 1)
-    largest = int(sizes[1]) if sizes.size > 1 else 1
-    return {
-        "continuous-share": continuity * all_pairs / pairs,
-        "largest-copy": largest / np.count_nonzero(filled),
-    }
+def _copying(source: NDArray[np.int32], continuity: float, sizes: NDArray[np.int64]) -> dict[str, float]:
+    filled = int(np.count_nonzero(source[:, :, 0] >= 0))
+    return {"copied-share": continuity, "largest-copy": largest_copy(sizes, filled)} if filled else {}
 
 
 def _notes(grown: Grown) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import EXEMPLAR, InputSpec, Method, register
 from texlab_core.engine.steps import Step
 from texlab_core.methods.efros_leung.fill import Anchor
+from texlab_core.methods.efros_leung.told import DISTANCE, EXACT_SHARE, GARBAGE, OWN_DISTANCE
 from texlab_core.methods.efros_leung.windows import Border, Criterion, Matching, Shape
 from texlab_core.work.tasks import relay, through
 
@@ -263,5 +264,6 @@ register(
             "growth that has lost its way: the same few pixels over and over",
         ),
         order=30,
+        measures=("copied-share", "largest-copy", EXACT_SHARE.id, DISTANCE.id, OWN_DISTANCE.id, GARBAGE.id),
     )
 )

@@ -220,7 +220,7 @@ class _Run:
         self.image: FloatImage | None = None
         axes = len(model.planes)
         self.distances = np.zeros((params.iterations + 1, axes, len(self.keys)))
-        self.final, self.pixel_distance = self.distances[-1], 0.0
+        self.final = self.distances[-1]
         self.pace = Pace(STRIDE)
         # A stage is the start, one round on one axis, or all that follows; a turn of the palette is half a stage.
         self.rounds, self.stage, self.samples = params.iterations * max(axes, 1), 0, 0
@@ -264,7 +264,6 @@ class _Run:
             self.final = yield from self._measure(
                 (yield from self._steps(self.model.axes.to_axes_task(image), "distances"))
             )
-        yield from self._measure_pixels(image)
         self.stage = self.stages - 1
         self._next_stage()
         yield self._step("done", {"mean-distance": _mean(self.distances[-1])})
@@ -279,15 +278,6 @@ class _Run:
             work = measure(plane, target, self.plan, self.team)
             distances[axis] = yield from self._steps(work, "distances")
         return distances
-
-    def _measure_pixels(self, image: FloatImage) -> Generator[Step, None, None]:
-        """Take W1 / sd between the pixels of image and exemplar, averaged over the channels."""
-        shares = []
-        for channel, sample in enumerate(self.model.palette):
-            spread = float(sample.std(dtype=np.float64))
-            work = match(image[..., channel].copy(), analysis.Target(sample, spread or 1.0), "exact", 0)
-            shares.append((yield from self._steps(work, "distances")))
-        self.pixel_distance = float(np.mean(shares))
 
     def _colours(self, image: FloatImage) -> Generator[Step, None, FloatImage]:
         if self.params.palette == "transport" and self.model.axes is not None:
@@ -312,7 +302,6 @@ class _Run:
         return Output(
             image=image,
             curves=curves,
-            measures={"w1-pixels": self.pixel_distance, "w1-bands": _mean(self.final)},
             notes=self._notes(),
             details=Convergence(self.keys, self.distances, self.final),
         )

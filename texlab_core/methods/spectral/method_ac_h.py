@@ -10,6 +10,7 @@ from texlab_core.engine.params import Params
 from texlab_core.engine.progress import Progress
 from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Output
+from texlab_core.methods.spectral import told
 from texlab_core.methods.spectral.choices import HistogramChoice
 from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish
 
@@ -66,7 +67,7 @@ def synthesize(
     image = yield from finish.apply(plane, progress, "histogram")
     return Output(
         image=image,
-        measures={"parameters": float(PARAMETERS + finish.parameters), "negative-power": clipped},
+        measures={told.PARAMETERS.id: float(PARAMETERS + finish.parameters), told.NEGATIVE_POWER.id: clipped},
         notes=(f"{100 * clipped:.2g} % of the spectrum was negative and was clipped.",) if clipped else (),
         details=model.acf,
     )
@@ -86,5 +87,6 @@ register(
             "anything that repeats at more than five pixels",
         ),
         order=43,
+        measures=(told.PARAMETERS.id, told.NEGATIVE_POWER.id),
     )
 )

@@ -12,6 +12,7 @@ from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Output
 from texlab_core.methods.spectral.choices import HistogramChoice
 from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish
+from texlab_core.methods.spectral.told import LARGEST_POLE, PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -84,7 +85,7 @@ def synthesize(
     image = yield from finish.apply(plane, progress, "histogram")
     return Output(
         image=image,
-        measures={"parameters": float(COEFFICIENTS + finish.parameters), "largest-pole": model.pole},
+        measures={PARAMETERS.id: float(COEFFICIENTS + finish.parameters), LARGEST_POLE.id: model.pole},
         notes=_notes(model.pole, limited),
         details=model.car,
     )
@@ -115,5 +116,6 @@ register(
         ),
         rehearsals=(CarParams(synthesis="recursion"),),
         order=42,
+        measures=(PARAMETERS.id, LARGEST_POLE.id),
     )
 )

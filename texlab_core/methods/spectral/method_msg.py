@@ -13,6 +13,7 @@ from texlab_core.engine.steps import Output
 from texlab_core.errors import InputError, ParamError
 from texlab_core.methods.spectral.choices import BandwidthMeasure, Equations, HistogramChoice, PhaseChoice
 from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish, encode
+from texlab_core.methods.spectral.told import ENERGY_ERROR, PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -149,8 +150,8 @@ def synthesize(
         image=image,
         curves=_curves(code, model.masses),
         measures={
-            "parameters": float(code.parameters - code.tone.parameters + finish.parameters),
-            "energy-error": plan.error,
+            PARAMETERS.id: float(code.parameters - code.tone.parameters + finish.parameters),
+            ENERGY_ERROR.id: plan.error,
         },
         notes=_notes(code, plan),
         details=MsgDetails(code, plan),
@@ -201,5 +202,6 @@ register(
         ),
         check=check,
         order=40,
+        measures=(PARAMETERS.id, ENERGY_ERROR.id),
     )
 )

@@ -12,6 +12,7 @@ from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.progress import Progress
 from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Output
+from texlab_core.methods.spectral.told import PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -88,7 +89,7 @@ def synthesize(
             image[rows, :, channel] = plane[rows]
             yield progress.at(stage, 0.6 + 0.4 * rows.stop / height)
     return Output(
-        image=image, measures={"parameters": float(parameter_count(model.planes.shape[1:], len(halves)))}
+        image=image, measures={PARAMETERS.id: float(parameter_count(model.planes.shape[1:], len(halves)))}
     )
 
 
@@ -103,5 +104,6 @@ register(
         synthesize=synthesize,
         fails_on=("objects, outlines and letters: phase is random", "textures with few large elements"),
         order=41,
+        measures=(PARAMETERS.id,),
     )
 )
