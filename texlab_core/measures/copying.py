@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from texlab_core.errors import InputError
 from texlab_core.measures.registry import Measure, register
-from texlab_core.work.tasks import go_on
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Generator
 
     from numpy.typing import NDArray
 
     from texlab_core.measures.subject import Subject
 
 _PIXELS_AT_ONCE = 2**18
-ValueT = TypeVar("ValueT")
 
 
 def continuous_share(source_map: NDArray[np.int32]) -> float:
@@ -37,7 +36,7 @@ def continuous_share(source_map: NDArray[np.int32]) -> float:
 
     Reference: the measure of copying behind De Bonet 1997, figs. 11 and 12 (how much was rearranged).
     """
-    return _drive(continuous_share_steps(source_map))
+    return finish(continuous_share_steps(source_map))
 
 
 def continuous_share_steps(source_map: NDArray[np.int32]) -> Generator[float, None, float]:
@@ -73,7 +72,7 @@ def copied_regions(source_map: NDArray[np.int32]) -> tuple[NDArray[np.int32], ND
     sizes
         (areas + 1,) int64: ``sizes[label]`` in pixels; ``sizes[0]`` counts the pixels that continue none.
     """
-    return _drive(copied_regions_steps(source_map))
+    return finish(copied_regions_steps(source_map))
 
 
 def copied_regions_steps(
@@ -137,16 +136,6 @@ def source_repetition(source_map: NDArray[np.int32]) -> float | None:
     return int(np.count_nonzero(there)) / int(np.count_nonzero(used))
 
 
-def _drive(steps: Generator[float, None, ValueT], look: Callable[[], None] = go_on) -> ValueT:
-    while True:
-        look()
-        try:
-            next(steps)
-        except StopIteration as end:
-            value: ValueT = end.value
-            return value
-
-
 def _row_blocks(height: int, width: int) -> list[tuple[int, int]]:
     rows = max(1, _PIXELS_AT_ONCE // max(1, width))
     return [(first, min(height, first + rows)) for first in range(0, height, rows)]
@@ -160,12 +149,12 @@ def _checked(source_map: NDArray[np.int32]) -> NDArray[np.int32]:
 
 def _regions(subject: Subject) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     assert subject.source is not None
-    return _drive(copied_regions_steps(subject.source), subject.look)
+    return finish(copied_regions_steps(subject.source), subject.look)
 
 
 def _share(subject: Subject) -> float | None:
     source = subject.source
-    return None if source is None or not _filled(source) else _drive(continuous_share_steps(source), subject.look)
+    return None if source is None or not _filled(source) else finish(continuous_share_steps(source), subject.look)
 
 
 def _largest(subject: Subject) -> float | None:
