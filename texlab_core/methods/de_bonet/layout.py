@@ -1,0 +1,259 @@
+"""The coarsest level of the output: what is laid out before anything is sampled.
+
+The paper repeats the exemplar's coarsest level, a single pixel. A larger one that is repeated as it is tiles, and one
+that is repeated with random shifts has straight cuts where repetitions meet. The layouts ``patches`` and ``fit``
+choose what is laid down next to what by how well it continues what lies there already, in strips of the exemplar at
+full resolution along every line between cells.
+
+Reference: De Bonet 1997, section 4.3, for ``tile``; the others go beyond it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator
+
+    from numpy.typing import NDArray
+
+    from texlab_core.multiresolution.quadtree import Grid
+    from texlab_core.multiresolution.seams import Seams
+    from texlab_core.run import Streams
+
+Coarsest = Literal["patches", "fit", "shift", "tile", "iid"]
+
+# Places that are compared for one patch.
+_MOST_PLACES = 1024
+# Patches between two looks.
+_AT_ONCE = 16
+# How far the middle of a patch may lie from its place in the pattern, as a share of the patch.
+_JITTER = 0.33
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """How the coarsest level is laid out.
+
+    Parameters
+    ----------
+    coarsest
+        ``patches``: irregular parts of the exemplar, each from a place that continues its neighbours;
+        ``fit``: whole repetitions, each shifted cyclically so that it continues its neighbours;
+        ``shift``: repetitions shifted cyclically at random; ``tile``: repetitions as they are; ``iid``: every
+        location at random.
+    patch
+        Width of a patch as a share of the exemplar's shorter side.
+    places
+        From how many of the places that continue best one is drawn.
+    periodic
+        Whether the output continues itself, so that its opposite sides are neighbours too.
+    """
+
+    coarsest: Coarsest = "patches"
+    patch: float = 0.5
+    places: int = 3
+    periodic: bool = False
+
+
+class _Region(NamedTuple):
+    """Locations that are laid down together: where they lie, (n,) each, and within their box, (n,) each."""
+
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    down: NDArray[np.int64]
+    right: NDArray[np.int64]
+
+
+def lay_out_steps(
+    seams: Seams, exemplar: Grid, whole: tuple[int, int], output: Grid, layout: Layout, streams: Streams
+) -> Generator[None, None, NDArray[np.int32]]:
+    """Return the source of every location of the coarsest level, in raster order.
+
+    An output no larger than the exemplar is not shifted, so that it can be the exemplar itself; where it is to
+    continue itself, ``patches`` and ``fit`` lay it out all the same.
+
+    Parameters
+    ----------
+    seams
+        Of the exemplar.
+    exemplar, output
+        Locations of both.
+    whole
+        Rows and columns of the exemplar's coarsest level that hold nothing padded.
+    streams
+        Of the job.
+
+    Returns
+    -------
+    ndarray
+        (rows * columns,) int32.
+    """
+    fits = output.rows <= exemplar.rows and output.columns <= exemplar.columns
+    fitted = layout.coarsest in ("patches", "fit")
+    if fitted and (layout.periodic or not fits):
+        random = streams(layout.coarsest)
+        cyclic = layout.coarsest == "fit"
+        room = (exemplar.rows, exemplar.columns) if cyclic else whole
+        regions = (
+            _repetitions(output, room)
+            if cyclic
+            else _patches(output, room, layout.patch, layout.periodic, random)
+        )
+        return (yield from _place(seams, regions, output, room, layout, random))
+    row, column = np.divmod(np.arange(output.rows * output.columns, dtype=np.int64), output.columns)
+    key = streams.key("coarsest")
+    if layout.coarsest == "iid":
+        return _hashed(key, row, column, exemplar.rows * exemplar.columns).astype(np.int32)
+    if layout.coarsest == "shift" and not fits:
+        tile_row, tile_column = row // exemplar.rows, column // exemplar.columns
+        shift = _hashed(key, tile_row, tile_column, exemplar.rows * exemplar.columns)
+        row, column = row + shift // exemplar.columns, column + shift % exemplar.columns
+    source: NDArray[np.int64] = row % exemplar.rows * exemplar.columns + column % exemplar.columns
+    return source.astype(np.int32)
+
+
+def _hashed(key: int, row: NDArray[np.int64], column: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Return a number in 0 .. count - 1 for each place, the same wherever the place is asked for."""
+    value = (row.astype(np.uint64) << np.uint64(32)) + column.astype(np.uint64)
+    with np.errstate(over="ignore"):
+        value = (value + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(key)
+        value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        value = (value ^ (value >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    value ^= value >> np.uint64(31)
+    return ((value >> np.uint64(32)) * np.uint64(count) >> np.uint64(32)).astype(np.int64)
+
+
+def _repetitions(output: Grid, room: tuple[int, int]) -> Iterator[_Region]:
+    """Split the output into blocks as large as the exemplar."""
+    for top in range(0, output.rows, room[0]):
+        for left in range(0, output.columns, room[1]):
+            down, right = np.indices((min(room[0], output.rows - top), min(room[1], output.columns - left)))
+            down, right = down.ravel(), right.ravel()
+            yield _Region(top + down, left + right, down, right)
+
+
+def _patches(
+    output: Grid, room: tuple[int, int], share: float, periodic: bool, random: np.random.Generator
+) -> Iterator[_Region]:
+    """Split the output into irregular patches: the cells nearest to each of a jittered brick pattern of middles."""
+    step = max(1.0, share * min(room))
+    counts, steps, starts = [], [], []
+    for length in (output.rows, output.columns):
+        if periodic:
+            # A whole number of patches, at least two: with one alone, nothing would be chosen to continue itself.
+            count = max(min(2, length), round(length / step))
+            counts.append(count)
+            steps.append(length / count)
+        else:
+            counts.append(int(np.ceil(length / step)) + 3)
+            steps.append(step)
+        starts.append(-(1 + random.random()) * steps[-1])
+    jitter = (random.random((2, *counts)) - 0.5) * 2 * _JITTER
+    row_step, column_step = steps
+    middles_down = starts[0] + (np.arange(counts[0])[:, None] + jitter[0]) * row_step
+    shifted = np.arange(counts[1]) + (np.arange(counts[0]) % 2)[:, None] / 2
+    middles_right = starts[1] + (shifted + jitter[1]) * column_step
+
+    rows, columns = np.indices((output.rows, output.columns)).reshape(2, -1)
+    near_row = np.floor((rows - starts[0]) / row_step).astype(np.int64)
+    near_column = np.floor((columns - starts[1]) / column_step).astype(np.int64)
+    nearest = np.full(rows.size, np.inf)
+    label = np.zeros(rows.size, np.int64)
+    down, right = np.zeros(rows.size), np.zeros(rows.size)
+    for i in range(-1, 3):
+        for j in range(-2, 3):
+            row, column = near_row + i, near_column + j
+            if periodic:
+                row, column = row % counts[0], column % counts[1]
+            else:
+                row, column = np.clip(row, 0, counts[0] - 1), np.clip(column, 0, counts[1] - 1)
+            dy, dx = rows - middles_down[row, column], columns - middles_right[row, column]
+            if periodic:
+                dy = (dy + output.rows / 2) % output.rows - output.rows / 2
+                dx = (dx + output.columns / 2) % output.columns - output.columns / 2
+            distance = dy * dy + dx * dx
+            closer = distance < nearest
+            nearest = np.where(closer, distance, nearest)
+            label = np.where(closer, row * counts[1] + column, label)
+            down, right = np.where(closer, dy, down), np.where(closer, dx, right)
+    # Distances from one middle are whole numbers apart.
+    order = np.argsort(label, kind="stable")
+    for members in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
+        below = np.round(down[members] - down[members].min()).astype(np.int64)
+        beside = np.round(right[members] - right[members].min()).astype(np.int64)
+        # What is larger than the exemplar is laid down in parts.
+        part = below // room[0] * (beside.max() // room[1] + 1) + beside // room[1]
+        for each in np.unique(part):
+            chosen = part == each
+            inner, outer = below[chosen], beside[chosen]
+            yield _Region(
+                rows[members[chosen]], columns[members[chosen]], inner - inner.min(), outer - outer.min()
+            )
+
+
+# Direction of the line between a location and its neighbour, step to the neighbour.
+_NEIGHBOURS = ((0, 0, -1), (1, -1, 0), (0, 0, 1), (1, 1, 0))
+
+
+def _place(
+    seams: Seams,
+    regions: Iterator[_Region],
+    output: Grid,
+    room: tuple[int, int],
+    layout: Layout,
+    random: np.random.Generator,
+) -> Generator[None, None, NDArray[np.int32]]:
+    """Lay down one region after the other, each from a place that continues what lies beside it."""
+    size = np.array([output.rows, output.columns])
+    taken = np.full((2, output.rows, output.columns), -1, np.int64)
+    cyclic = layout.coarsest == "fit"
+    extent = np.array([seams.rows, seams.columns])[:, None, None]
+    for count, region in enumerate(regions):
+        places = _places(region, room, cyclic, random)
+        cost, same = np.zeros(places.shape[1]), np.zeros(places.shape[1], bool)
+        # (2, n, places): what each location would be a copy of.
+        inside = np.stack((region.down, region.right))
+        for direction, *step in _NEIGHBOURS:
+            beside = np.stack((region.rows + step[0], region.columns + step[1]))
+            if layout.periodic:
+                beside %= size[:, None]
+            there = np.flatnonzero(((beside >= 0) & (beside < size[:, None])).all(0))
+            there = there[taken[0, beside[0, there], beside[1, there]] >= 0]
+            if there.size == 0:
+                continue
+            neighbour = taken[:, beside[0, there], beside[1, there]]
+            own = inside[:, there, None] + places[:, None, :]
+            # Going on as the neighbour does would fit best, and repeat the exemplar.
+            same |= ((own + np.reshape(step, (2, 1, 1)) - neighbour[:, :, None]) % extent == 0).all(0).any(0)
+            far, near = (neighbour, own) if max(step) > 0 else (neighbour - np.reshape(step, (2, 1)), own)
+            if max(step) > 0:
+                near = own + np.reshape(step, (2, 1, 1))
+            if cyclic:
+                far, near = far % extent[:, 0], near % extent
+            fit = seams.misfit(direction, (far[0], far[1]), (near[0], near[1]), cyclic=cyclic)
+            cost += fit.sum(0)
+        if same.all():
+            same[:] = False
+        cost[same] = np.inf
+        best = np.argsort(cost, kind="stable")[: layout.places]
+        best = best[np.isfinite(cost[best])]
+        chosen = int(best[random.integers(best.size)]) if cost.any() else int(random.integers(cost.size))
+        found = inside + places[:, chosen, None]
+        taken[:, region.rows, region.columns] = found % extent[:, 0] if cyclic else found
+        if count % _AT_ONCE == 0:
+            yield
+    return (taken[0] * seams.columns + taken[1]).ravel().astype(np.int32)
+
+
+def _places(
+    region: _Region, room: tuple[int, int], cyclic: bool, random: np.random.Generator
+) -> NDArray[np.int64]:
+    """Return where in the exemplar the box of a region can lie, (2, n): everywhere, or where it fits."""
+    free = room if cyclic else (room[0] - int(region.down.max()), room[1] - int(region.right.max()))
+    count = free[0] * free[1]
+    numbers = np.arange(count) if count <= _MOST_PLACES else random.choice(count, _MOST_PLACES, replace=False)
+    return np.stack(np.divmod(numbers, free[1]))
