@@ -61,18 +61,24 @@ def cartoon(side: int, discs: int, grain: float = 0.0, channels: int = 1) -> Flo
     return np.clip(image + grain * random.standard_normal(image.shape), 0, 1).astype(np.float32)
 
 
-def grown(pixels: FloatImage, alpha: float, side: int) -> Callable[[], object]:
+def grown(pixels: FloatImage, alpha: float, side: int, coarsest: Any = "patches") -> Callable[[], object]:
     """Return sampling and collapse, without the analysis and without maps and measures."""
     from texlab_core.methods.de_bonet.analysis import analyze_steps
     from texlab_core.methods.de_bonet.growth import grow
-    from texlab_core.methods.de_bonet.sampling import prepare, sample_steps
+    from texlab_core.methods.de_bonet.layout import Layout
+    from texlab_core.methods.de_bonet.sampling import prepare_steps, sample_steps
     from texlab_core.work.tasks import finish
 
     analysis = finish(analyze_steps(pixels))
     table = np.full((analysis.depth, len(analysis.features)), alpha, np.float32)
 
+    layout = Layout(coarsest=coarsest)
+
     def work() -> FloatImage:
-        sampling = prepare(analysis, table, (side, side), coarsest="shift", literal_levels=0, streams=Streams(0))
+        preparing = prepare_steps(
+            analysis, table, (side, side), layout=layout, literal_levels=0, streams=Streams(0)
+        )
+        sampling = finish(preparing)
         progress = sample_steps(sampling)
         steps = grow(analysis, sampling.grid, sampling.sources, progress, size=(side, side), periodic=False)
         return finish(steps)
@@ -106,6 +112,15 @@ def test_128_to_256() -> None:
         for alpha in (0.05, 0.15, 0.3):
             sampled, made = cpu(grown(pixels, alpha, 256)) / one, cpu(whole(pixels, alpha, 256)) / one
             print(f"{name:24} {alpha:4.2f} {sampled:19.1f} {made:12.1f} {target:8}")
+
+
+def test_layouts() -> None:
+    print("\ntime of 128 -> 256, alpha 0.15, relative to repetitions that are shifted at random")
+    for name, pixels in (("gray", GRAY[:128, :128]), ("RGB", RGB[:128, :128])):
+        usual = cpu(grown(pixels, 0.15, 256, "shift"))
+        ratios = (cpu(grown(pixels, 0.15, 256, layout)) / usual for layout in ("patches", "fit", "tile", "iid"))
+        print(f"{name:5} patches {next(ratios):.2f}, fit {next(ratios):.2f}, tile {next(ratios):.2f}, "
+              f"iid {next(ratios):.2f}")  # fmt: skip
 
 
 def test_growth_with_area() -> None:

@@ -50,8 +50,8 @@ def made(pixels: np.ndarray, size: tuple[int, int] | None = None, seed: int = 0,
 
 
 @pytest.mark.parametrize("border", ["reflect", "periodic"])
-@pytest.mark.parametrize("shape", [(64, 96, 3), (128, 128, 1), (48, 80, 3)])
-def test_alpha_0_returns_the_input(border: str, shape: tuple[int, int, int]) -> None:
+@pytest.mark.parametrize("shape", [(64, 96, 3), (128, 128, 1), (48, 80, 3), (61, 83, 3), (130, 67, 1), (7, 90, 1)])
+def test_alpha_0_returns_the_input_on_any_size(border: str, shape: tuple[int, int, int]) -> None:
     pixels = noise(*shape)
     result = made(pixels, alpha=0, border=border, seed=7)
     np.testing.assert_array_equal(result.image, pixels)
@@ -117,24 +117,29 @@ def test_choices_stay_when_alpha_moves_a_little(
     pixels = cartoon(grain=grain)
     one, other = (made(pixels, (256, 256), alpha=alpha) for alpha in (0.15, 0.155))
     if deferred:
-        assert (one.details.sampling.matches[1] < 0).mean() > 0.2
+        assert (one.details.sampling.matches[1] < 0).mean() > 0.1
     changed = (one.maps["source"].data != other.maps["source"].data).any(-1)
     assert changed.mean() <= 0.05
 
 
-def test_neither_rejection_nor_its_threshold_changes_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("coarsest", ["patches", "shift"])
+def test_neither_rejection_nor_its_threshold_changes_bits(
+    coarsest: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for siblings in ("parity", "literal"):
-        deferred = made(cartoon(grain=0.01), (128, 160), alpha=0.3, siblings=siblings)
-        assert (deferred.details.sampling.matches[1] < 0).mean() > 0.2
+        knobs = {"alpha": 0.3, "siblings": siblings, "coarsest": coarsest}
+        deferred = made(cartoon(grain=0.01), (128, 160), seed, **knobs)
+        assert (deferred.details.sampling.matches[1] < 0).mean() > 0.1
         monkeypatch.setattr(sampling_module, "_defer_from", lambda sampling: 10**9)
-        listed = made(cartoon(grain=0.01), (128, 160), alpha=0.3, siblings=siblings)
+        listed = made(cartoon(grain=0.01), (128, 160), seed, **knobs)
         monkeypatch.undo()
         assert (listed.details.sampling.matches[1] >= 0).all()
         np.testing.assert_array_equal(deferred.image, listed.image)
         np.testing.assert_array_equal(deferred.maps["candidates"].data, listed.maps["candidates"].data)
         exact = float(np.median(listed.details.sampling.matches[1])) * (4 if siblings == "literal" else 1)
         assert median_candidates(listed.details.sampling, 0) == exact
-        assert deferred.measures["median-candidates"] == pytest.approx(exact, rel=0.25)
+        assert deferred.measures["median-candidates"] == pytest.approx(exact, rel=0.35)
 
 
 def test_more_alpha_more_candidates() -> None:
@@ -147,20 +152,21 @@ def test_more_alpha_more_candidates() -> None:
 def test_coarsest_layouts() -> None:
     pixels = noise(64, 64)
     sources = {}
-    for coarsest in ("shift", "tile", "iid"):
+    for coarsest in ("shift", "fit", "tile", "iid"):
         sampling = made(pixels, (192, 128), coarsest=coarsest).details.sampling
         sources[coarsest] = sampling.sources[-1].reshape(24, 16)
     own = np.arange(64).reshape(8, 8)
     np.testing.assert_array_equal(sources["tile"], np.tile(own, (3, 2)))
-    shifts = set()
-    for row in range(3):
-        for column in range(2):
-            block = sources["shift"][8 * row : 8 * row + 8, 8 * column : 8 * column + 8]
-            # A cyclic shift by whole cells of the coarsest level.
-            dy, dx = divmod(int(block[0, 0]), 8)
-            np.testing.assert_array_equal(block, np.roll(own, (-dy, -dx), (0, 1)))
-            shifts.add((dy, dx))
-    assert len(shifts) > 1
+    for name in ("shift", "fit"):
+        shifts = set()
+        for row in range(3):
+            for column in range(2):
+                block = sources[name][8 * row : 8 * row + 8, 8 * column : 8 * column + 8]
+                # A cyclic shift by whole cells of the coarsest level.
+                dy, dx = divmod(int(block[0, 0]), 8)
+                np.testing.assert_array_equal(block, np.roll(own, (-dy, -dx), (0, 1)))
+                shifts.add((dy, dx))
+        assert len(shifts) > 1
     assert len(np.unique(sources["iid"])) > 32
 
 
@@ -187,7 +193,10 @@ def test_tileable_output_has_no_seam() -> None:
     open_, tiles = (made(smooth, (128, 128), tileable=tileable, **knobs).image for tileable in (False, True))
     assert seam(tiles) < 0.8 * seam(open_)
     assert not made(smooth, (128, 128), tileable=True).notes
-    assert "does not tile" in made(smooth, (100, 128), tileable=True).notes[0]
+    fewer = made(smooth, (100, 128), tileable=True)
+    assert fewer.details.sampling.grid.depth == 2
+    assert "has 2 halvings and not 3" in fewer.notes[0]
+    assert "does not tile" in made(smooth, (100, 128), tileable=True, uneven="crop").notes[0]
 
 
 def test_smooth_border() -> None:
@@ -214,16 +223,19 @@ def test_analysis_is_shared_by_everything_that_only_samples() -> None:
 
 def test_maps_and_curves() -> None:
     pixels = noise(37, 66)
-    result = made(pixels, (70, 90), alpha=0.4, siblings="mixed")
+    result = made(pixels, (70, 90), alpha=0.4, siblings="mixed", coarsest="tile")
     sampling = result.details.sampling
     source = result.maps["source"].data
     assert list(result.maps) == ["source", "candidates", "copied"]
     copies = pickle.loads(pickle.dumps(result.maps))
     assert all((copies[name].data == result.maps[name].data).all() for name in result.maps)
     assert source.dtype == np.int32
-    # In the exemplar's own coordinates, the crop's corner included.
-    assert source.reshape(-1, 2).min(0).tolist() == [0, 1]
-    assert source.reshape(-1, 2).max(0).tolist() == [35, 64]
+    # In the exemplar's own coordinates, wherever the corner of a crop lies and whatever was padded.
+    assert source.reshape(-1, 2).min(0).tolist() == [0, 0]
+    assert source.reshape(-1, 2).max(0).tolist() == [36, 65]
+    cropped = made(pixels, (70, 90), fitting="crop", coarsest="tile").maps["source"].data.reshape(-1, 2)
+    assert cropped.min(0).tolist() == [0, 1]
+    assert cropped.max(0).tolist() == [35, 64]
     labels, sizes = copied_regions(source)
     np.testing.assert_array_equal(result.maps["copied"].data, labels)
     np.testing.assert_array_equal(result.details.region_sizes, sizes)

@@ -9,10 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab_core.methods.de_bonet.analysis import analyze_steps, choose_depth, periodic_component
+from texlab_core.methods.de_bonet.analysis import analyze_steps
+from texlab_core.methods.de_bonet.channels import planes_of
 from texlab_core.methods.de_bonet.collapse import coarsest, collapse_steps
+from texlab_core.methods.de_bonet.fitting import choose_depth
 from texlab_core.methods.de_bonet.quadtree import Grid
 from texlab_core.transforms import gaussian, laplacian
+from texlab_core.transforms.fourier import periodic_component
 from texlab_core.transforms.oriented import derivatives, kernels
 from texlab_core.work.tasks import finish
 
@@ -149,7 +152,7 @@ def test_features_from_first_principles(border: str) -> None:
             np.testing.assert_allclose(each.features[:, column], expected, atol=2e-3)
 
 
-@pytest.mark.parametrize("normalization", ["variance", "level", "range", "sum"])
+@pytest.mark.parametrize("normalization", ["variance", "level", "range", "sum", "printed"])
 def test_scales(normalization: str) -> None:
     image = pixels(32, 32, 1)
     unit = finish(analyze_steps(image, smallest=8, normalization="variance")).levels[1]
@@ -159,6 +162,7 @@ def test_scales(normalization: str) -> None:
         "level": np.full(9, raw.var(0).mean()),
         "range": np.ptp(raw, axis=0) ** 2,
         "sum": (raw**2).sum(0),
+        "printed": abs(raw.sum(0)),
     }[normalization]
     scale = finish(analyze_steps(image, smallest=8, normalization=normalization)).levels[1].scale
     np.testing.assert_allclose(scale, expected, rtol=1e-4)
@@ -175,7 +179,7 @@ def test_constant_features_are_ignored() -> None:
 def test_luminance_alone() -> None:
     image = pixels(32, 32, 3)
     gray = (image @ np.array([0.299, 0.587, 0.114], np.float32))[..., None]
-    colour = finish(analyze_steps(image, luminance_only=True))
+    colour = finish(analyze_steps(image, channels="luminance"))
     mono = finish(analyze_steps(gray))
     assert colour.feature_names == mono.feature_names
     assert colour.channels == 3
@@ -210,8 +214,74 @@ def test_cropped_to_the_centre() -> None:
     image = pixels(37, 66)
     analysis = finish(analyze_steps(image, smallest=4))
     assert analysis.grid.shape(0) == (36, 64)
-    assert analysis.origin == (0, 1)
+    assert analysis.rows.tolist() == list(range(36))
+    assert analysis.columns.tolist() == list(range(1, 65))
+    assert analysis.whole == (9, 16) == (analysis.grid.rows, analysis.grid.columns)
     assert "cropped from 66 x 37 to 64 x 36" in analysis.notes[0]
+
+
+@pytest.mark.parametrize("border", ["reflect", "periodic", "smooth"])
+@pytest.mark.parametrize(("size", "depth", "padded"), [((37, 66), 2, (40, 68)), ((64, 48), 3, (64, 48))])
+def test_padded_as_the_border_says(
+    border: str, size: tuple[int, int], depth: int, padded: tuple[int, int]
+) -> None:
+    image = pixels(*size, 3)
+    analysis = finish(analyze_steps(image, smallest=5, fitting="pad", border=border))
+    assert (analysis.depth, analysis.grid.shape(0)) == (depth, padded)
+    assert analysis.whole == (size[0] >> depth, size[1] >> depth)
+    for own, old, new in ((analysis.rows, size[0], padded[0]), (analysis.columns, size[1], padded[1])):
+        beyond = [2 * (old - 1) - i if border == "reflect" else i - old for i in range(old, new)]
+        assert own.tolist() == [*range(old), *beyond]
+    # The bands add up to the padded exemplar.
+    expected = periodic_component(image) if border == "smooth" else image
+    expected = expected[np.ix_(analysis.rows, analysis.columns)]
+    bands = laplacian.build(expected.astype(np.float64), depth, analysis.border)
+    for level, band in enumerate(bands):
+        places = analysis.levels[level].coordinates
+        np.testing.assert_allclose(analysis.levels[level].band, band[places[:, 0], places[:, 1]], atol=1e-6)
+    said = [note for note in analysis.notes if "padded from 66 x 37 to 68 x 40" in note]
+    assert len(said) == (padded != size)
+
+
+def test_padding_and_cropping_change_the_area_by_at_most_15_percent() -> None:
+    for height in range(5, 140, 3):
+        for width in (17, 64, 97, 131):
+            for smallest in (1, 3, 8):
+                for fitting in ("pad", "crop"):
+                    depth = choose_depth(height, width, smallest, fitting)
+                    side = 2**depth
+                    assert depth == 0 or min(height, width) // side >= smallest
+                    up = -1 if fitting == "pad" else 1
+                    area = np.prod([up * (up * old // side) * side for old in (height, width)])
+                    assert abs(area / (height * width) - 1) <= 0.15
+
+
+def test_principal_axes() -> None:
+    """Colours along two directions: two axes, in the order of their variance; what is constant is no axis."""
+    random = np.random.default_rng(3)
+    first, second = random.normal(0, 0.1, (2, 32, 32, 1))
+    colour = 0.5 + first * np.array([0.8, 0.6, 0.0]) + 0.4 * second * np.array([0.0, 0.0, -1.0])
+    planes = planes_of(colour.astype(np.float32), "principal")
+    assert planes.names == ("axis-1", "axis-2")
+    np.testing.assert_allclose(planes.axes, [[0.8, 0], [0.6, 0], [0, 1]], atol=0.05)
+    analysis = finish(analyze_steps(colour.astype(np.float32), channels="principal"))
+    assert {feature.channel for feature in analysis.features} == {"axis-1", "axis-2"}
+    assert analysis.levels[0].band.shape[1] == 3
+    assert planes_of(np.full((8, 8, 3), 0.5, np.float32), "principal").names == ("axis-1",)
+    gray = pixels(16, 16)
+    assert planes_of(gray, "principal").see(gray) is gray
+
+
+def test_scaled_thresholds_are_thresholds_times_the_channels() -> None:
+    image = pixels(32, 32, 3)
+    every, scaled = (finish(analyze_steps(image, channels=channels)) for channels in ("all", "scaled"))
+    assert every.feature_names == scaled.feature_names
+    for one, other in zip(every.levels[1:], scaled.levels[1:], strict=True):
+        np.testing.assert_allclose(other.scale, 3 * one.scale)
+        np.testing.assert_allclose(other.features, one.features / np.sqrt(3), rtol=1e-5)
+    gray = pixels(32, 32)
+    one, other = (finish(analyze_steps(gray, channels=channels)) for channels in ("all", "scaled"))
+    np.testing.assert_array_equal(one.levels[1].features, other.levels[1].features)
 
 
 def test_periodic_component_has_no_jump() -> None:

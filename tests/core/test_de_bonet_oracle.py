@@ -12,13 +12,14 @@ from texlab_core.engine.streams import Streams
 from texlab_core.kernels.candidates import ranks
 from texlab_core.methods.de_bonet import sampling as sampling_module
 from texlab_core.methods.de_bonet.analysis import analyze_steps
+from texlab_core.methods.de_bonet.layout import Layout
 from texlab_core.methods.de_bonet.maps import candidate_map
 from texlab_core.methods.de_bonet.sampling import (
     Sampling,
     candidate_bits,
     list_matches,
     match_chain,
-    prepare,
+    prepare_steps,
     sample_steps,
 )
 from texlab_core.methods.de_bonet.thresholds import threshold_law
@@ -42,8 +43,9 @@ def sampled(
     if callable(thresholds):
         thresholds = thresholds(analysis)
     table = np.broadcast_to(np.asarray(thresholds, np.float32), (analysis.depth, len(analysis.features))).copy()
-    sampling = prepare(
-        analysis, table, size, coarsest=coarsest, literal_levels=literal_levels, streams=Streams(seed)
+    layout = Layout(coarsest=coarsest)
+    sampling = finish(
+        prepare_steps(analysis, table, size, layout=layout, literal_levels=literal_levels, streams=Streams(seed))
     )
     for _ in sample_steps(sampling):
         pass
@@ -101,17 +103,17 @@ def test_sizes_that_are_no_powers_of_two(size: tuple[int, int]) -> None:
     check_against_oracle(sampled(exemplar(*size, 1, 3), 0.3, (size[1] + 6, size[0] + 3), smallest=4))
 
 
-@pytest.mark.parametrize("coarsest", ["shift", "tile", "iid"])
+@pytest.mark.parametrize("coarsest", ["patches", "fit", "shift", "tile", "iid"])
 @pytest.mark.parametrize("options", [{"smallest": 1}, {"smallest": 4, "border": "periodic"}])
 def test_coarsest_levels(coarsest: str, options: dict[str, object]) -> None:
     check_against_oracle(sampled(exemplar(16, 16, 1, 4), 0.4, (32, 40), coarsest=coarsest, **options))
 
 
 @pytest.mark.parametrize("filters", ["first", "second", "laplacian"])
-@pytest.mark.parametrize("normalization", ["variance", "level", "range", "sum"])
+@pytest.mark.parametrize("normalization", ["variance", "level", "range", "sum", "printed"])
 def test_features(filters: str, normalization: str) -> None:
     alpha = {"sum": 1e-4, "range": 0.01}.get(normalization, 0.3)
-    options = {"filters": filters, "normalization": normalization, "luminance_only": True}
+    options = {"filters": filters, "normalization": normalization, "channels": "luminance"}
     check_against_oracle(sampled(exemplar(24, 24, 3, 5), alpha, (24, 48), smallest=3, **options))
 
 

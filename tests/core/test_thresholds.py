@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from texlab_core.engine.params import ParamValue
 from texlab_core.errors import ParamError
-from texlab_core.methods.de_bonet.features import Feature, feature_list
+from texlab_core.methods.de_bonet.features import Feature, channel_names, feature_list
 from texlab_core.methods.de_bonet.method import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import MAX_CELLS, ThresholdTable, threshold_law
 
-NAMES = [feature.name for feature in feature_list(3, "both", 7)]
+NAMES = [feature.name for feature in feature_list(channel_names(3), "both", 7)]
 cells = st.dictionaries(
     st.tuples(st.integers(1, 24), st.sampled_from(NAMES)), st.floats(0, 1e6, allow_nan=False), max_size=30
 )
@@ -118,7 +118,7 @@ def test_numbers_of_other_types() -> None:
 @pytest.mark.parametrize("orientations", range(2, 9))
 @pytest.mark.parametrize("channels", [1, 3])
 def test_every_feature_has_a_name_of_its_own_that_tables_accept(orientations: int, channels: int) -> None:
-    features = feature_list(channels, "both", orientations)
+    features = feature_list(channel_names(channels), "both", orientations)
     names = [feature.name for feature in features]
     assert len(set(names)) == len(features) == channels * (1 + 2 * orientations)
     table = ThresholdTable().changed({(1, name): 0.5 for name in names})
@@ -129,8 +129,8 @@ def test_every_feature_has_a_name_of_its_own_that_tables_accept(orientations: in
 
 def test_names_survive_other_orientations() -> None:
     assert Feature("red", "first", 45.0).name == "red/first-45"
-    four = {feature.name for feature in feature_list(3, "both", 4)}
-    eight = {feature.name for feature in feature_list(3, "both", 8)}
+    four = {feature.name for feature in feature_list(channel_names(3), "both", 4)}
+    eight = {feature.name for feature in feature_list(channel_names(3), "both", 8)}
     assert four < eight
     assert Feature("red", "second", 22.5).mirrored() == Feature("red", "second", 157.5)
     assert Feature("red", "second", 0).mirrored() == Feature("red", "second", 0)

@@ -108,9 +108,10 @@ def test_the_candidates_are_marked_in_the_exemplar(looker, column):
     row, place = pixel_with_candidates(column)
     looker.look(row, place)
     level = explain(column.result.details.sampling, row, place).at(0)
-    top, left = column.result.model.origin
-    found = {(mark.top - top, mark.left - left) for mark in looker.marks}
-    assert found == {tuple(each) for each in level.candidates.tolist()}
+    model = column.result.model
+    rows, columns = model.rows[level.candidates[:, 0]], model.columns[level.candidates[:, 1]]
+    found = {(mark.top, mark.left) for mark in looker.marks}
+    assert found == set(zip(rows.tolist(), columns.tolist(), strict=True))
     assert [mark.role for mark in looker.marks].count("chosen") == 1
     chosen = looker.marks[-1]
     assert chosen.role == "chosen"
@@ -135,9 +136,12 @@ def test_what_is_said(column):
     near, most = explanation.strictest(1), explanation.strictest()
     words = summary(explanation, 0)
     count = len(explanation.at(0).candidates)
-    assert words.startswith(
-        f"Level 0: {explanation.at(0).source[1]}, {explanation.at(0).source[0]}, drawn from {count}"
-    )
+    # Places are those of the map of sources: pixels of the exemplar.
+    top, left = column.result.maps["source"].data[row, place]
+    assert words.startswith(f"Level 0: {left}, {top}, drawn from {count}")
+    top, left, side = explanation.exemplar_box(2, *explanation.at(2).source)
+    assert summary(explanation, 2).startswith(f"Level 2: {left}, {top} (4 x 4 px), ")
+    assert side == 4
     depth = column.result.model.depth
     for each in (near, most):
         feature = feature_words(explanation.features[each.feature])
@@ -191,9 +195,8 @@ def test_pictures_are_the_levels_of_the_exemplar(column):
     pictures = level_pictures(column.result)
     model = column.result.model
     assert [picture.shape[:2] for picture in pictures] == [model.grid.shape(k) for k in range(model.depth, -1, -1)]
-    (top, left), (height, width) = model.origin, model.grid.shape(0)
-    crop = exemplar().pixels[top : top + height, left : left + width]
-    assert np.array_equal(pictures[-1], np.round(crop * 255).astype(np.uint8))
+    shown = exemplar().pixels[np.ix_(model.rows, model.columns)]
+    assert np.array_equal(pictures[-1], np.round(shown * 255).astype(np.uint8))
 
 
 def test_keys_change_level_and_candidate(looker, column):

@@ -80,9 +80,10 @@ class Preset:
         _check_text("note", self.note, MAX_NOTE, empty=True, lines=True)
         method = find_method(self.method)
         # Building them checks every value and every combination; what was left out takes its default here.
-        complete = method.params.from_json(self.parameters).to_json()
+        named = method.params.completed(self.parameters)
+        complete = method.params.from_json(named).to_json()
         # Copied through text: neither the caller nor a reader can change the preset afterwards.
-        given = strict_json.loads(strict_json.dumps({name: complete[name] for name in self.parameters}))
+        given = strict_json.loads(strict_json.dumps({name: complete[name] for name in named}))
         object.__setattr__(self, "parameters", frozen_mapping(given))
 
     @classmethod

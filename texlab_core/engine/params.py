@@ -83,6 +83,9 @@ class Knob:
         Heading under which the form puts it.
     when
         Field name and the values of that field for which this one has an effect.
+    formerly
+        For a parameter that came later: what documents mean that were written in full before there was one. None
+        for a parameter that has been there from the beginning.
     """
 
     help: str
@@ -99,6 +102,7 @@ class Knob:
     source: str = ""
     group: str = ""
     when: tuple[str, tuple[object, ...]] | None = None
+    formerly: bool | int | float | str | None = None
 
 
 @dataclass(frozen=True)
@@ -249,10 +253,30 @@ class Params:
 
     @classmethod
     def from_json(cls, data: Mapping[str, object]) -> Self:
-        """Build from JSON data; fields that are left out take their defaults."""
+        """Build from JSON data; fields that are left out take their defaults, see :meth:`completed`."""
+        return cls(**cls.completed(data))
+
+    @classmethod
+    def completed(cls, data: Mapping[str, object]) -> dict[str, Any]:
+        """Return JSON data with the values that a document of an earlier version stands for.
+
+        A document that names every parameter that has been there from the beginning was written in full: what it
+        lacks did not exist yet, and has the value of :attr:`Knob.formerly`. A document that names some of them
+        leaves the others to the defaults, and is returned as it is.
+
+        Raises
+        ------
+        ParamError
+            When a name is unknown.
+        """
         _reject_unknown(cls, data)
+        fields = describe(cls)
         values: dict[str, Any] = dict(data)
-        return cls(**values)
+        if all(each.name in values for each in fields if each.knob.formerly is None):
+            for each in fields:
+                if each.knob.formerly is not None:
+                    values.setdefault(each.name, each.knob.formerly)
+        return values
 
     @classmethod
     def parse(cls, settings: Mapping[str, str], base: Self | None = None) -> Self:

@@ -105,13 +105,14 @@ def _matches(features: Floats, thresholds: Floats, one: int, other: int) -> bool
 
 @njit
 def _contains(members: Ints, first: int, last: int, value: int) -> bool:
+    end = last
     while first < last:
         middle = (first + last) >> 1
         if members[middle] < value:
             first = middle + 1
         else:
             last = middle
-    return first < members.size and members[first] == value
+    return first < end and members[first] == value
 
 
 @njit

@@ -193,7 +193,8 @@ def _from_json(given: object) -> SweepRecipe:
     strict_json.check_keys(data, _KEYS, RecipeError)
     method = find_method(_typed(data, "method", str))
     parameters = _typed(data, "parameters", dict, {})
-    complete = method.params.from_json(parameters).to_json()
+    named = method.params.completed(parameters)
+    complete = method.params.from_json(named).to_json()
     vary = _typed(data, "vary", list)
     if not 1 <= len(vary) <= 2:
         raise RecipeError(f"vary: must hold one or two knobs, got {len(vary)}.")
@@ -201,7 +202,7 @@ def _from_json(given: object) -> SweepRecipe:
         name=_text(data, "name", 80),
         method=method.id,
         axes=tuple(_axis(each, method.params) for each in vary),
-        parameters=frozen_mapping({name: complete[name] for name in parameters}),
+        parameters=frozen_mapping({name: complete[name] for name in named}),
         note=_text(data, "note", 4000, ""),
         size=_size(data.get("size")),
         seed=check_seed(data.get("seed", 0)),

@@ -61,20 +61,20 @@ def explain_pixel(
 ) -> ExplainedPixel:
     """Explain a pixel of a De Bonet result (in a background thread)."""
     explanation = explain(result.details.sampling, row, column)
-    pictures = _pictures.get(Same(result.model), lambda: level_pictures(result))
+    analysis = result.details.sampling.analysis
+    pictures = _pictures.get(Same(analysis), lambda: level_pictures(result))
     marked = tuple(spread(len(each.candidates), each.chosen) for each in explanation.levels)
-    return ExplainedPixel(explanation, Axes.of(result.model), pictures, marked)
+    return ExplainedPixel(explanation, Axes.of(analysis), pictures, marked)
 
 
 def level_pictures(result: Result) -> tuple[Picture, ...]:
-    """Return the levels N .. 0 of the exemplar that the model was made from."""
+    """Return the levels N .. 0 of the exemplar that the result was sampled from, padded or cropped as it was."""
     from texlab_core.transforms.gaussian import build
 
-    model = result.model
-    (top, left), (height, width) = model.origin, model.grid.shape(0)
-    pixels = exemplar_of(result.job.inputs).pixels[top : top + height, left : left + width]
-    levels = build(np.ascontiguousarray(pixels), model.depth, model.border) if model.depth else [pixels]
-    return tuple(to_picture(level) for level in reversed(levels[: model.depth + 1]))
+    analysis = result.details.sampling.analysis
+    pixels = exemplar_of(result.job.inputs).pixels[np.ix_(analysis.rows, analysis.columns)]
+    levels = build(pixels, analysis.depth, analysis.border)
+    return tuple(to_picture(level) for level in reversed(levels))
 
 
 def spread(count: int, chosen: int) -> tuple[int, ...]:
@@ -103,15 +103,21 @@ def strictest_words(explanation: Explanation, strictest: Strictest) -> str:
     return f"level {level} (k={strictest.k}), {feature} excludes {strictest.excluded} of {tested}"
 
 
+def place_words(explanation: Explanation, level: int, row: int, column: int) -> str:
+    """Return where in the exemplar a location of a level lies: its pixel, or the corner of its square."""
+    top, left, side = explanation.exemplar_box(level, row, column)
+    return f"{left}, {top}" + (f" ({side} x {side} px)" if side > 1 else "")
+
+
 def summary(explanation: Explanation, level: int) -> str:
     """Return why the ancestor of a level is what it is, in words."""
     each = explanation.at(level)
-    row, column = each.source
+    where = place_words(explanation, level, *each.source)
     count = len(each.candidates)
     if level == len(explanation.levels) - 1:
-        return f"Level {level}, the coarsest, is laid out and not sampled: here stands {column}, {row}."
+        return f"Level {level}, the coarsest, is laid out and not sampled: here stands {where}."
     taken = "the only candidate" if count == 1 else f"drawn from {count:,} candidates"
-    words = f"Level {level}: {column}, {row}, {taken}."
+    words = f"Level {level}: {where}, {taken}."
     near, most = explanation.strictest(level + 1), explanation.strictest()
     if near is None or most is None:
         return f"{words} Level {level + 1} excludes nothing."
@@ -192,13 +198,15 @@ class DeBonetView(ExplanationView):
 
     def _show_legend(self, index: int, each: ExplainedLevel) -> None:
         """Say what is compared, in the colours of the bars."""
+        assert self._explained is not None
         row, column = each.candidates[index]
+        where = place_words(self._explained.explanation, each.level, int(row), int(column))
         kind = "taken" if index == each.chosen else "not taken"
         self.caption.show_parts(
             ("the pixel", "exemplar"),
             (" and ", "muted"),
             (f"candidate {index + 1:,} of {len(each.candidates):,}", "result"),
-            (f" ({kind}) at {column}, {row}", "muted"),
+            (f" ({kind}) at {where}", "muted"),
         )
 
     def _select(self, tile: int, place: int) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from texlab_core.engine.params import describe
 from texlab_core.methods.de_bonet.analysis import Analysis
+from texlab_core.methods.de_bonet.report import DeBonetDetails
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD, ThresholdTable, threshold_law
 
 if TYPE_CHECKING:
@@ -97,7 +98,11 @@ class KnownAxes:
 
     def of(self, column: ColumnScene) -> Axes | None:
         """Return the axes of a column, the last known ones while it has no result."""
-        model = column.result.model if column.result is not None else None
+        model: object = None
+        if column.result is not None:
+            details = column.result.details
+            # A tile may have fewer levels than the exemplar's own pyramid.
+            model = details.sampling.analysis if isinstance(details, DeBonetDetails) else column.result.model
         known = self._known.get(column.id)
         if isinstance(model, Analysis) and (known is None or known.model is not model):
             known = self._known[column.id] = Axes.of(model)

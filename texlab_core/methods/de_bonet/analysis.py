@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from texlab_core.methods.de_bonet.channels import Channels, planes_of
 from texlab_core.methods.de_bonet.features import FeatureKind, FilterSet, feature_list
-from texlab_core.methods.de_bonet.quadtree import Grid
-from texlab_core.transforms.fourier import periodic_component
-from texlab_core.transforms.luma import luma
+from texlab_core.methods.de_bonet.fitting import ExemplarBorder, Fitting, choose_depth, fit
+from texlab_core.methods.de_bonet.seams import Seams
 from texlab_core.work.tasks import through
 
 if TYPE_CHECKING:
@@ -19,15 +19,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.methods.de_bonet.features import Feature
+    from texlab_core.methods.de_bonet.quadtree import Grid
     from texlab_core.transforms.gaussian import Border
     from texlab_core.transforms.oriented import Order
 
-Normalization = Literal["variance", "level", "range", "sum"]
+Normalization = Literal["variance", "level", "range", "sum", "printed"]
 
-# A crop may cost at most this share of the exemplar; beyond it the pyramid gets fewer levels.
-LARGEST_LOSS = 0.15
 # Features that vary by less than this are constant up to rounding; images live in [0, 1].
 _CONSTANT = 1e-6
+# A printed Z below this is rounding: the feature sums to nothing.
+_SMALLEST_SUM = 1e-12
 _PIXELS_AT_ONCE = 2**17
 
 
@@ -63,15 +64,19 @@ class Analysis:
     Parameters
     ----------
     grid
-        Locations of the cropped exemplar.
+        Locations of the fitted exemplar.
     levels
         Level 0 (finest) .. N.
     features
         What the columns of every feature table are.
     border
         Border rule of the pyramid, which the collapse follows.
-    origin
-        Row and column of the crop in the exemplar.
+    rows, columns
+        (H,) and (W,) int32: which row and column of the exemplar each of the fitted one shows.
+    whole
+        Rows and columns of the coarsest level whose cells hold nothing padded.
+    seams
+        How well places of the coarsest level continue each other.
     notes
         What was done to the exemplar, one sentence each.
     """
@@ -80,7 +85,10 @@ class Analysis:
     levels: tuple[Level, ...]
     features: tuple[Feature, ...]
     border: Border
-    origin: tuple[int, int]
+    rows: NDArray[np.int32]
+    columns: NDArray[np.int32]
+    whole: tuple[int, int]
+    seams: Seams
     notes: tuple[str, ...]
 
     @property
@@ -103,28 +111,18 @@ class Analysis:
         return self.depth + 1 - k
 
 
-def choose_depth(height: int, width: int, smallest: int) -> int:
-    """Return the largest N for which a level N of ``smallest`` pixels remains and little is cropped away."""
-    depth = 0
-    while True:
-        side = 2 ** (depth + 1)
-        rows, columns = height // side, width // side
-        kept = rows * columns * side * side / (height * width)
-        if min(rows, columns) < smallest or 1 - kept > LARGEST_LOSS:
-            return depth
-        depth += 1
-
-
 def analyze_steps(
     pixels: NDArray[np.float32],
     *,
     smallest: int = 8,
-    border: Literal["reflect", "periodic", "smooth"] = "reflect",
+    border: ExemplarBorder = "reflect",
+    fitting: Fitting = "crop",
+    depth: int | None = None,
     normalization: Normalization = "variance",
     filters: FilterSet = "both",
     orientations: int = 4,
     filter_size: int = 5,
-    luminance_only: bool = False,
+    channels: Channels = "all",
 ) -> Generator[tuple[int, int], None, Analysis]:
     """Analyze an exemplar, yielding (done, total) on the way.
 
@@ -134,16 +132,21 @@ def analyze_steps(
         (H, W, C) float32.
     smallest
         Shorter side that the coarsest level may not fall below, in pixels.
+    fitting
+        How the sides of the exemplar become multiples of 2^N.
+    depth
+        N; None takes the largest that ``smallest`` and ``fitting`` allow.
     border
         Border rule of the pyramid; ``smooth`` is periodic after the removal of the smooth component that makes
         opposite borders differ (Moisan 2011).
     normalization
         Z of eq. 10: the feature's variance, the mean variance of all features of the level, the squared range,
-        or the literal sum of squares over all pixels.
+        the sum of squares over all pixels, or the size of the sum over all pixels, as it is printed.
     filters, orientations, filter_size
         Filter bank.
-    luminance_only
-        Features of the luminance alone; colours still move together.
+    channels
+        Which planes have features, see :func:`texlab_core.methods.de_bonet.channels.planes_of`; colours always
+        move together.
 
     Returns
     -------
@@ -151,20 +154,19 @@ def analyze_steps(
 
     Reference: De Bonet 1997, section 4.2, eqs. 5, 7, 8 and 10.
     """
-    height, width, channels = pixels.shape
-    depth = choose_depth(height, width, smallest)
-    grid = Grid(height >> depth, width >> depth, depth)
-    cropped, origin, notes = _crop(pixels, grid)
-    if border == "smooth":
-        cropped = periodic_component(cropped)
-        notes += ("The smooth component of the exemplar was removed, so that its borders fit.",)
+    height, width, _ = pixels.shape
+    if depth is None:
+        depth = choose_depth(height, width, smallest, fitting)
+    fitted = fit(pixels, depth, border, fitting)
+    grid = fitted.grid
     rule: Border = "reflect" if border == "reflect" else "periodic"
-    features = feature_list(1 if luminance_only else channels, filters, orientations)
+    planes = planes_of(fitted.pixels, channels)
+    features = feature_list(planes.names, filters, orientations)
     kinds = {feature.kind for feature in features}
     total = sum(grid.count(i) * (2 + (len(features) + 3 if i else 0)) for i in range(depth + 1))
     done = 0
     levels = []
-    gaussian = cropped
+    gaussian = fitted.pixels
     for i in range(depth + 1):
         coarser, band = gaussian, gaussian.astype(np.float64)
         if i < depth:
@@ -172,14 +174,20 @@ def analyze_steps(
         done += 2 * grid.count(i)
         measured = np.empty((len(features) if i else 0, *grid.shape(i)), np.float32)
         if i > 0:
-            seen = (luma(gaussian)[..., None], luma(band)[..., None]) if luminance_only else (gaussian, band)
-            filling = _measure(seen[0], seen[1], measured, kinds, orientations, filter_size, rule)
+            filling = _measure(
+                planes.see(gaussian), planes.see(band), measured, kinds, orientations, filter_size, rule
+            )
             yield from through(filling, (done, total))
-        levels.append((yield from through(_finish(grid, i, band, measured, normalization), (done, total))))
+        levels.append(
+            (yield from through(_finish(grid, i, band, measured, normalization, planes.stretch), (done, total)))
+        )
         done += grid.count(i) * (len(features) + 3 if i else 0)
         gaussian = coarser
         yield done, total
-    return Analysis(grid, tuple(levels), features, rule, origin, notes)
+    seams = Seams.of(fitted.pixels, grid.rows, grid.columns)
+    return Analysis(
+        grid, tuple(levels), features, rule, fitted.rows, fitted.columns, fitted.whole, seams, fitted.notes
+    )
 
 
 def row_blocks(height: int, width: int) -> Iterator[tuple[int, int]]:
@@ -187,20 +195,6 @@ def row_blocks(height: int, width: int) -> Iterator[tuple[int, int]]:
     rows = max(1, _PIXELS_AT_ONCE // width)
     for first in range(0, height, rows):
         yield first, min(height, first + rows)
-
-
-def _crop(pixels: NDArray[np.float32], grid: Grid) -> tuple[NDArray[np.float32], tuple[int, int], tuple[str, ...]]:
-    height, width, _ = pixels.shape
-    rows, columns = grid.shape(0)
-    origin = ((height - rows) // 2, (width - columns) // 2)
-    if (rows, columns) == (height, width):
-        return pixels, origin, ()
-    cropped = pixels[origin[0] : origin[0] + rows, origin[1] : origin[1] + columns]
-    note = (
-        f"The exemplar was cropped from {width} x {height} to {columns} x {rows} pixels, its centre, "
-        f"so that {grid.depth} halvings come out even."
-    )
-    return np.ascontiguousarray(cropped), origin, (note,)
 
 
 def _split(
@@ -256,13 +250,18 @@ def _measure(
 
 
 def _finish(
-    grid: Grid, i: int, band: NDArray[np.float64], measured: NDArray[np.float32], normalization: Normalization
+    grid: Grid,
+    i: int,
+    band: NDArray[np.float64],
+    measured: NDArray[np.float32],
+    normalization: Normalization,
+    stretch: float,
 ) -> Generator[None, None, Level]:
     """Normalize and reorder."""
     from texlab_core.kernels.classes import classify_rows
 
     columns, height, width = measured.shape
-    scale = yield from _scales(measured, normalization)
+    scale = stretch * (yield from _scales(measured, normalization))
     factor = np.where(np.isfinite(scale), 1 / np.sqrt(scale), 0).astype(np.float32)
     level = Level(
         band=np.empty((height * width, band.shape[2])),
@@ -300,6 +299,8 @@ def _scales(
         spread[j] = np.ptp(plane)
         if normalization == "sum":
             scale[j] = np.einsum("yx,yx->", plane, plane, dtype=np.float64)
+        elif normalization == "printed":
+            scale[j] = max(abs(plane.sum(dtype=np.float64)), _SMALLEST_SUM)
         else:
             scale[j] = spread[j] ** 2 if normalization == "range" else np.var(plane, dtype=np.float64)
         yield

@@ -36,9 +36,9 @@ class ExplainedLevel:
     location
         Row and column in the output at this level.
     source
-        Row and column in the cropped exemplar at this level.
+        Row and column in the fitted exemplar at this level.
     candidates
-        (n, 2) int32 rows and columns in the cropped exemplar that ``source`` was chosen from; at the coarsest
+        (n, 2) int32 rows and columns in the fitted exemplar that ``source`` was chosen from; at the coarsest
         level, which is laid out and not sampled, the source alone.
     chosen
         Index of ``source`` among the candidates.
@@ -94,10 +94,12 @@ class Explanation:
         return self.levels[self._sampling.grid.depth - level]
 
     def exemplar_box(self, level: int, row: int, column: int) -> tuple[int, int, int]:
-        """Return top, left and side, in pixels of the whole exemplar, of a location of a level of the crop."""
-        top, left = self._sampling.analysis.origin
-        side = 2**level
-        return top + row * side, left + column * side, side
+        """Return top, left and side, in pixels of the exemplar itself, of a location of a level."""
+        analysis, side = self._sampling.analysis, 2**level
+        # What was padded shows pixels that lie elsewhere.
+        top = int(analysis.rows[row * side : (row + 1) * side].min())
+        left = int(analysis.columns[column * side : (column + 1) * side].min())
+        return top, left, side
 
     def parent_structure(self, level: int) -> NDArray[np.float32]:
         """Return the normalized features of the ancestors of the location at a level, N .. ``level + 1``.

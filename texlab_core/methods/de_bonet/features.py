@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 FeatureKind = Literal["laplacian", "first", "second"]
 FilterSet = Literal["both", "first", "second", "laplacian"]
@@ -16,7 +19,8 @@ class Feature:
     Parameters
     ----------
     channel
-        ``luminance`` (also of a gray exemplar), ``red``, ``green`` or ``blue``.
+        ``luminance`` (also of a gray exemplar), ``red``, ``green`` or ``blue``, or a principal axis of the
+        exemplar's colours: ``axis-1`` (the strongest), ``axis-2``, ``axis-3``.
     kind
         The band of the Laplacian pyramid, or a first or second derivative of the Gaussian one.
     angle
@@ -42,11 +46,10 @@ def channel_names(channels: int) -> tuple[str, ...]:
     return ("luminance",) if channels == 1 else ("red", "green", "blue")
 
 
-def feature_list(channels: int, filters: FilterSet, orientations: int) -> tuple[Feature, ...]:
-    """Return the features in the order of the analysis: for each kind and angle, all channels."""
+def feature_list(names: Sequence[str], filters: FilterSet, orientations: int) -> tuple[Feature, ...]:
+    """Return the features in the order of the analysis: for each kind and angle, all channels by their names."""
     kinds: tuple[FeatureKind, ...] = ("first", "second")
     chosen = [kind for kind in kinds if filters in ("both", kind)]
-    names = channel_names(channels)
     found = [Feature(name, "laplacian") for name in names]
     for kind in chosen:
         for k in range(orientations):

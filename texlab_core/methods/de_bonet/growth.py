@@ -8,7 +8,7 @@ import numpy as np
 
 from texlab_core.engine.steps import Step
 from texlab_core.errors import InputError
-from texlab_core.methods.de_bonet.analysis import choose_depth, row_blocks
+from texlab_core.methods.de_bonet.analysis import row_blocks
 from texlab_core.methods.de_bonet.collapse import coarsest, collapse_steps, enlarge
 from texlab_core.methods.de_bonet.quadtree import Grid
 from texlab_core.work.tasks import relay, through
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _LARGEST_GRID = 2**27
 
 
-def check_size(exemplar: tuple[int, int], smallest: int, size: tuple[int, int]) -> None:
+def check_size(size: tuple[int, int], depth: int) -> None:
     """Refuse outputs so thin that whole cells of the coarsest level would be many times larger.
 
     Raises
@@ -33,7 +33,6 @@ def check_size(exemplar: tuple[int, int], smallest: int, size: tuple[int, int]) 
     InputError
         When more than 128 megapixels would have to be made.
     """
-    depth = choose_depth(*exemplar, smallest)
     height, width = Grid.covering(*size, depth).shape(0)
     if height * width > _LARGEST_GRID:
         raise InputError(

@@ -1,15 +1,16 @@
 """The coarsest level of the output: what is laid out before anything is sampled.
 
-The paper repeats the exemplar's coarsest level, a single pixel. A larger one that is repeated as it is tiles, and one
-that is repeated with random shifts has straight cuts where repetitions meet. The layouts ``patches`` and ``fit``
-choose what is laid down next to what by how well it continues what lies there already, in strips of the exemplar at
-full resolution along every line between cells.
+The paper repeats the exemplar's coarsest level, a single pixel. A larger one that is repeated as it is tiles, and
+one that is repeated with random shifts has straight cuts where repetitions meet. The layouts ``patches`` and
+``fit`` choose what is laid down next to what by how well it continues what lies there already, in strips of the
+exemplar at full resolution along every line between cells.
 
 Reference: De Bonet 1997, section 4.3, for ``tile``; the others go beyond it.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -20,14 +21,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.multiresolution.quadtree import Grid
-    from texlab_core.multiresolution.seams import Seams
-    from texlab_core.run import Streams
+    from texlab_core.engine.streams import Streams
+    from texlab_core.methods.de_bonet.quadtree import Grid
+    from texlab_core.methods.de_bonet.seams import Seams
 
 Coarsest = Literal["patches", "fit", "shift", "tile", "iid"]
 
 # Places that are compared for one patch.
-_MOST_PLACES = 1024
+_MOST_PLACES = 512
 # Patches between two looks.
 _AT_ONCE = 16
 # How far the middle of a patch may lie from its place in the pattern, as a share of the patch.
@@ -60,12 +61,10 @@ class Layout:
 
 
 class _Region(NamedTuple):
-    """Locations that are laid down together: where they lie, (n,) each, and within their box, (n,) each."""
+    """Locations that are laid down together: (2, n) rows and columns in the output, and within their box."""
 
-    rows: NDArray[np.int64]
-    columns: NDArray[np.int64]
-    down: NDArray[np.int64]
-    right: NDArray[np.int64]
+    cells: NDArray[np.int64]
+    inside: NDArray[np.int64]
 
 
 def lay_out_steps(
@@ -99,9 +98,7 @@ def lay_out_steps(
         cyclic = layout.coarsest == "fit"
         room = (exemplar.rows, exemplar.columns) if cyclic else whole
         regions = (
-            _repetitions(output, room)
-            if cyclic
-            else _patches(output, room, layout.patch, layout.periodic, random)
+            _repetitions(output, room) if cyclic else _patches(output, room, layout.patch, layout.periodic, random)
         )
         return (yield from _place(seams, regions, output, room, layout, random))
     row, column = np.divmod(np.arange(output.rows * output.columns, dtype=np.int64), output.columns)
@@ -131,15 +128,17 @@ def _repetitions(output: Grid, room: tuple[int, int]) -> Iterator[_Region]:
     """Split the output into blocks as large as the exemplar."""
     for top in range(0, output.rows, room[0]):
         for left in range(0, output.columns, room[1]):
-            down, right = np.indices((min(room[0], output.rows - top), min(room[1], output.columns - left)))
-            down, right = down.ravel(), right.ravel()
-            yield _Region(top + down, left + right, down, right)
+            extent = (min(room[0], output.rows - top), min(room[1], output.columns - left))
+            inside = np.indices(extent).reshape(2, -1)
+            yield _Region(inside + np.array([[top], [left]]), inside)
 
 
 def _patches(
     output: Grid, room: tuple[int, int], share: float, periodic: bool, random: np.random.Generator
 ) -> Iterator[_Region]:
-    """Split the output into irregular patches: the cells nearest to each of a jittered brick pattern of middles."""
+    """Split the output into irregular patches: the cells nearest to each middle of a jittered brick pattern."""
+    from texlab_core.kernels.patches import nearest_middles
+
     step = max(1.0, share * min(room))
     counts, steps, starts = [], [], []
     for length in (output.rows, output.columns):
@@ -159,44 +158,26 @@ def _patches(
     middles_right = starts[1] + (shifted + jitter[1]) * column_step
 
     rows, columns = np.indices((output.rows, output.columns)).reshape(2, -1)
-    near_row = np.floor((rows - starts[0]) / row_step).astype(np.int64)
-    near_column = np.floor((columns - starts[1]) / column_step).astype(np.int64)
-    nearest = np.full(rows.size, np.inf)
-    label = np.zeros(rows.size, np.int64)
-    down, right = np.zeros(rows.size), np.zeros(rows.size)
-    for i in range(-1, 3):
-        for j in range(-2, 3):
-            row, column = near_row + i, near_column + j
-            if periodic:
-                row, column = row % counts[0], column % counts[1]
-            else:
-                row, column = np.clip(row, 0, counts[0] - 1), np.clip(column, 0, counts[1] - 1)
-            dy, dx = rows - middles_down[row, column], columns - middles_right[row, column]
-            if periodic:
-                dy = (dy + output.rows / 2) % output.rows - output.rows / 2
-                dx = (dx + output.columns / 2) % output.columns - output.columns / 2
-            distance = dy * dy + dx * dx
-            closer = distance < nearest
-            nearest = np.where(closer, distance, nearest)
-            label = np.where(closer, row * counts[1] + column, label)
-            down, right = np.where(closer, dy, down), np.where(closer, dx, right)
+    label, offset = np.empty(rows.size, np.int64), np.empty((2, rows.size))
+    middles = np.stack((middles_down, middles_right))
+    size = np.array([output.rows, output.columns])
+    nearest_middles(middles, np.array(starts), np.array(steps), size, periodic, label, offset)
     # Distances from one middle are whole numbers apart.
     order = np.argsort(label, kind="stable")
-    for members in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
-        below = np.round(down[members] - down[members].min()).astype(np.int64)
-        beside = np.round(right[members] - right[members].min()).astype(np.int64)
+    cells, offset = np.stack((rows, columns))[:, order], offset[:, order]
+    bounds = [0, *(np.flatnonzero(np.diff(label[order])) + 1).tolist(), order.size]
+    for first, last in itertools.pairwise(bounds):
+        part, off = cells[:, first:last], offset[:, first:last]
+        inside = np.round(off - off.min(1, keepdims=True)).astype(np.int64)
+        if inside[0].max() < room[0] and inside[1].max() < room[1]:
+            yield _Region(np.ascontiguousarray(part), inside)
+            continue
         # What is larger than the exemplar is laid down in parts.
-        part = below // room[0] * (beside.max() // room[1] + 1) + beside // room[1]
-        for each in np.unique(part):
-            chosen = part == each
-            inner, outer = below[chosen], beside[chosen]
-            yield _Region(
-                rows[members[chosen]], columns[members[chosen]], inner - inner.min(), outer - outer.min()
-            )
-
-
-# Direction of the line between a location and its neighbour, step to the neighbour.
-_NEIGHBOURS = ((0, 0, -1), (1, -1, 0), (0, 0, 1), (1, 1, 0))
+        boxes = inside // np.array(room)[:, None]
+        number = boxes[0] * (boxes[1].max() + 1) + boxes[1]
+        for each in np.unique(number):
+            chosen = inside[:, number == each]
+            yield _Region(part[:, number == each], chosen - chosen.min(1, keepdims=True))
 
 
 def _place(
@@ -208,52 +189,38 @@ def _place(
     random: np.random.Generator,
 ) -> Generator[None, None, NDArray[np.int32]]:
     """Lay down one region after the other, each from a place that continues what lies beside it."""
-    size = np.array([output.rows, output.columns])
+    from texlab_core.kernels.patches import weigh_places
+
     taken = np.full((2, output.rows, output.columns), -1, np.int64)
     cyclic = layout.coarsest == "fit"
-    extent = np.array([seams.rows, seams.columns])[:, None, None]
+    extent = np.array([seams.rows, seams.columns])
     for count, region in enumerate(regions):
         places = _places(region, room, cyclic, random)
-        cost, same = np.zeros(places.shape[1]), np.zeros(places.shape[1], bool)
-        # (2, n, places): what each location would be a copy of.
-        inside = np.stack((region.down, region.right))
-        for direction, *step in _NEIGHBOURS:
-            beside = np.stack((region.rows + step[0], region.columns + step[1]))
-            if layout.periodic:
-                beside %= size[:, None]
-            there = np.flatnonzero(((beside >= 0) & (beside < size[:, None])).all(0))
-            there = there[taken[0, beside[0, there], beside[1, there]] >= 0]
-            if there.size == 0:
-                continue
-            neighbour = taken[:, beside[0, there], beside[1, there]]
-            own = inside[:, there, None] + places[:, None, :]
-            # Going on as the neighbour does would fit best, and repeat the exemplar.
-            same |= ((own + np.reshape(step, (2, 1, 1)) - neighbour[:, :, None]) % extent == 0).all(0).any(0)
-            far, near = (neighbour, own) if max(step) > 0 else (neighbour - np.reshape(step, (2, 1)), own)
-            if max(step) > 0:
-                near = own + np.reshape(step, (2, 1, 1))
-            if cyclic:
-                far, near = far % extent[:, 0], near % extent
-            fit = seams.misfit(direction, (far[0], far[1]), (near[0], near[1]), cyclic=cyclic)
-            cost += fit.sum(0)
-        if same.all():
-            same[:] = False
-        cost[same] = np.inf
-        best = np.argsort(cost, kind="stable")[: layout.places]
-        best = best[np.isfinite(cost[best])]
-        chosen = int(best[random.integers(best.size)]) if cost.any() else int(random.integers(cost.size))
-        found = inside + places[:, chosen, None]
-        taken[:, region.rows, region.columns] = found % extent[:, 0] if cyclic else found
+        cost, same = np.zeros(places.shape[1]), np.zeros(places.shape[1], np.bool_)
+        neighbours = 0
+        for direction, lines in enumerate(seams.lines):
+            neighbours += weigh_places(
+                region.cells, region.inside, places, taken, extent, layout.periodic, cyclic, direction,
+                lines.before, lines.behind, lines.table_before, lines.table_behind, cost, same,
+            )  # fmt: skip
+        # Going on as a neighbour does would fit best, and repeat the exemplar.
+        allowed = np.flatnonzero(~same) if not same.all() else np.arange(same.size)
+        if neighbours:
+            allowed = allowed[np.argsort(cost[allowed], kind="stable")[: layout.places]]
+        chosen = int(allowed[random.integers(allowed.size)])
+        found = region.inside + places[:, chosen, None]
+        taken[:, region.cells[0], region.cells[1]] = found % extent[:, None] if cyclic else found
         if count % _AT_ONCE == 0:
             yield
-    return (taken[0] * seams.columns + taken[1]).ravel().astype(np.int32)
+    source: NDArray[np.int32] = (taken[0] * seams.columns + taken[1]).ravel().astype(np.int32)
+    return source
 
 
 def _places(
     region: _Region, room: tuple[int, int], cyclic: bool, random: np.random.Generator
 ) -> NDArray[np.int64]:
     """Return where in the exemplar the box of a region can lie, (2, n): everywhere, or where it fits."""
-    free = room if cyclic else (room[0] - int(region.down.max()), room[1] - int(region.right.max()))
+    free = room if cyclic else (room[0] - int(region.inside[0].max()), room[1] - int(region.inside[1].max()))
     count = free[0] * free[1]
     numbers = np.arange(count) if count <= _MOST_PLACES else random.choice(count, _MOST_PLACES, replace=False)
     return np.stack(np.divmod(numbers, free[1]))

@@ -50,7 +50,7 @@ def source_map_steps(
 ) -> Generator[None, None, NDArray[np.int32]]:
     """Return row and column of the source of every pixel of a level, (height, width, 2) int32.
 
-    Coordinates are those of the cropped exemplar at that level; at level 0 those of the whole exemplar.
+    Coordinates are those of the fitted exemplar at that level; at level 0 those of the exemplar itself.
     """
     from texlab_core.kernels.collapse import source_rows
 
@@ -59,7 +59,8 @@ def source_map_steps(
     row_part, column_part = sampling.grid.parts(level)
     places = sampling.analysis.levels[level].coordinates
     if level == 0:
-        places = places + np.array(sampling.analysis.origin, np.int32)
+        analysis = sampling.analysis
+        places = np.stack((analysis.rows[places[:, 0]], analysis.columns[places[:, 1]]), axis=1)
     for first, last in row_blocks(height, width):
         source_rows(sampling.sources[level], row_part, column_part, places, out, first, last)
         yield

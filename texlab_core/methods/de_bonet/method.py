@@ -78,21 +78,64 @@ class DeBonetParams(Params):
         ),
     ] = 1
     coarsest: Annotated[
-        Literal["shift", "tile", "iid"],
+        Literal["patches", "fit", "shift", "tile", "iid"],
         Knob(
-            help="How the coarsest level fills a larger output.",
+            help="How the coarsest level is laid out where the output is larger than the exemplar.",
             choices={
-                "shift": "repeated, every repetition shifted cyclically at random",
-                "tile": "repeated as it is; the tiling shows",
+                "patches": "irregular parts of the exemplar, each from a place that continues its neighbours",
+                "fit": "repeated, every repetition shifted cyclically so that it continues its neighbours",
+                "shift": "repeated, every repetition shifted cyclically at random; straight cuts show",
+                "tile": "repeated as it is, as in the paper; the tiling shows",
                 "iid": "every location drawn at random",
             },
-            source="De Bonet 1997, section 4.3",
-            group="Sampling",
+            source="De Bonet 1997, section 4.3 (tile)",
+            group="Layout",
         ),
-    ] = "shift"
+    ] = "patches"
+    patch: Annotated[
+        float,
+        Knob(
+            help="Width of a patch as a share of the exemplar's shorter side; smaller ones make more that is new.",
+            low=0.1,
+            high=1,
+            step=0.05,
+            when=("coarsest", ("patches",)),
+            formerly=0.5,
+            group="Layout",
+        ),
+    ] = 0.5
+    places: Annotated[
+        int,
+        Knob(
+            help="From how many of the places that continue best one is drawn; 1 takes the best.",
+            low=1,
+            high=50,
+            log=True,
+            when=("coarsest", ("patches", "fit")),
+            formerly=3,
+            group="Layout",
+        ),
+    ] = 3
     tileable: Annotated[
-        bool, Knob(help="Collapse with periodic borders, so that the output tiles.", group="Sampling")
+        bool,
+        Knob(
+            help="Make an output that continues itself: its opposite sides are neighbours in layout and collapse.",
+            group="Layout",
+        ),
     ] = False
+    uneven: Annotated[
+        Literal["fewer", "crop"],
+        Knob(
+            help="What becomes of a tile whose sides are no multiples of 2^N.",
+            choices={
+                "fewer": "fewer halvings, so that it tiles",
+                "crop": "made at the next multiples and cropped, so that it does not tile",
+            },
+            when=("tileable", (True,)),
+            formerly="crop",
+            group="Layout",
+        ),
+    ] = "fewer"
     coarsest_side: Annotated[
         int,
         Knob(
@@ -122,6 +165,19 @@ class DeBonetParams(Params):
             group="Pyramid",
         ),
     ] = "reflect"
+    fitting: Annotated[
+        Literal["pad", "crop"],
+        Knob(
+            help="How the sides of the exemplar become multiples of 2^N, N the number of halvings.",
+            stage="analysis",
+            choices={
+                "pad": "goes on below and on the right as the border says; nothing is lost",
+                "crop": "reduced to its centre",
+            },
+            formerly="crop",
+            group="Pyramid",
+        ),
+    ] = "pad"
     filters: Annotated[
         Literal["both", "first", "second", "laplacian"],
         Knob(
@@ -162,16 +218,21 @@ class DeBonetParams(Params):
         ),
     ] = 5
     channels: Annotated[
-        Literal["all", "luminance"],
+        Literal["all", "scaled", "principal", "luminance"],
         Knob(
             help="Which channels constrain; colours always move together.",
             stage="analysis",
-            choices={"all": "each channel has its own features", "luminance": "features of the luminance alone"},
+            choices={
+                "all": "each channel has its own features, and all of them must match",
+                "scaled": "the same, with thresholds multiplied by the number of channels",
+                "principal": "features of the exemplar's principal colour axes, those with 5 % of the variance",
+                "luminance": "features of the luminance alone",
+            },
             group="Features",
         ),
     ] = "all"
     normalization: Annotated[
-        Literal["variance", "level", "range", "sum"],
+        Literal["variance", "level", "range", "sum", "printed"],
         Knob(
             help="What squared feature differences are divided by, Z.",
             stage="analysis",
@@ -179,7 +240,9 @@ class DeBonetParams(Params):
                 "variance": "the variance of the feature at its level",
                 "level": "one constant per level: the mean variance of its features",
                 "range": "the squared range of the feature at its level",
-                "sum": "the literal sum over all pixels; nearly everything matches",
+                "sum": "the sum of its squares over all pixels; nearly everything matches",
+                "printed": "the size of its sum over all pixels, as printed: chance decides, since bands and "
+                "derivatives sum to nearly nothing",
             },
             source="De Bonet 1997, eq. 10",
             group="Features",
@@ -192,28 +255,39 @@ class DeBonetParams(Params):
         fitted = self.filter_size if self.fit_filters and self.filters != "laplacian" else 1
         return max(self.coarsest_side, fitted)
 
+    def depth(self, exemplar: tuple[int, int]) -> int:
+        """Return the number of halvings N for an exemplar of this height and width."""
+        from texlab_core.methods.de_bonet.fitting import choose_depth
+
+        return choose_depth(*exemplar, self.smallest_side, self.fitting)
+
 
 def check(inputs: Inputs, params: DeBonetParams, size: tuple[int, int]) -> None:
     """Refuse outputs that are too thin for the pyramid."""
     from texlab_core.methods.de_bonet.growth import check_size
 
-    check_size(exemplar_of(inputs).size, params.smallest_side, size)
+    check_size(size, params.depth(exemplar_of(inputs).size))
 
 
 def analyze(inputs: Inputs, params: DeBonetParams) -> Generator[Step, None, Analysis]:
     """Build pyramid and features of the exemplar."""
+    return (yield from _analyze(inputs, params, params.depth(exemplar_of(inputs).size)))
+
+
+def _analyze(inputs: Inputs, params: DeBonetParams, depth: int) -> Generator[Step, None, Analysis]:
     from texlab_core.methods.de_bonet.analysis import analyze_steps
     from texlab_core.methods.de_bonet.growth import analyze_in_steps
 
     steps = analyze_steps(
         exemplar_of(inputs).pixels,
-        smallest=params.smallest_side,
+        depth=depth,
         border=params.border,
+        fitting=params.fitting,
         normalization=params.normalization,
         filters=params.filters,
         orientations=params.orientations,
         filter_size=params.filter_size,
-        luminance_only=params.channels == "luminance",
+        channels=params.channels,
     )
     return (yield from analyze_in_steps(steps, "features"))
 
@@ -222,20 +296,38 @@ def synthesize(
     model: Analysis, inputs: Inputs, params: DeBonetParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Sample level by level, growing the picture on the way (SynthesizePyramid)."""
+    from texlab_core.engine.steps import Step
+    from texlab_core.methods.de_bonet.fitting import even_halvings
     from texlab_core.methods.de_bonet.growth import grow
+    from texlab_core.methods.de_bonet.layout import Layout
     from texlab_core.methods.de_bonet.report import report_steps
-    from texlab_core.methods.de_bonet.sampling import prepare, sample_steps
+    from texlab_core.methods.de_bonet.sampling import prepare_steps, sample_steps
+    from texlab_core.work.tasks import through
 
+    notes: tuple[str, ...] = ()
+    if params.tileable and (depth := even_halvings(*size)) < model.depth:
+        multiples = f"multiples of {2**model.depth} pixels"
+        if params.uneven == "fewer":
+            notes = (
+                f"So that it tiles, the pyramid has {depth} halvings and not {model.depth}; sides that are "
+                f"{multiples} have them all.",
+            )
+            model = yield from _analyze(inputs, params, depth)
+        else:
+            notes = (f"The output was cropped and does not tile: its sides must be {multiples}.",)
     depth = model.depth
     literal = {"parity": 0, "literal": depth, "mixed": min(depth, params.literal_levels)}
-    sampling = prepare(
+    preparing = prepare_steps(
         model,
         params.thresholds.matrix(params.alpha, params.beta, depth, model.feature_names),
         size,
-        coarsest=params.coarsest,
+        layout=Layout(
+            coarsest=params.coarsest, patch=params.patch, places=params.places, periodic=params.tileable
+        ),
         literal_levels=literal[params.siblings],
         streams=streams,
     )
+    sampling = yield from through(preparing, Step(0, 1, "layout"))
     image = yield from grow(
         model,
         sampling.grid,
@@ -245,11 +337,7 @@ def synthesize(
         periodic=params.tileable or model.border == "periodic",
         after=sampling.grid.count(0),
     )
-    notes = model.notes
-    if params.tileable and sampling.grid.shape(0) != size:
-        side = 2**depth
-        notes += (f"The output was cropped and does not tile: its sides must be multiples of {side} pixels.",)
-    return (yield from report_steps(sampling, size, image, notes))
+    return (yield from report_steps(sampling, size, image, model.notes + notes))
 
 
 register(

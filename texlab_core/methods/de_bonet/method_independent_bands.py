@@ -55,9 +55,10 @@ class BandsParams(Params):
 
 def check(inputs: Inputs, params: BandsParams, size: tuple[int, int]) -> None:
     """Refuse outputs that are too thin for the pyramid."""
+    from texlab_core.methods.de_bonet.fitting import choose_depth
     from texlab_core.methods.de_bonet.growth import check_size
 
-    check_size(exemplar_of(inputs).size, params.coarsest_side, size)
+    check_size(size, choose_depth(*exemplar_of(inputs).size, params.coarsest_side))
 
 
 def analyze(inputs: Inputs, params: BandsParams) -> Generator[Step, None, Analysis]:

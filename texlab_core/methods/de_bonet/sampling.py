@@ -15,10 +15,11 @@ Reference: De Bonet 1997, section 4.2, eqs. 8 to 12, and its pseudo-code Synthes
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from texlab_core.methods.de_bonet.layout import lay_out_steps
 from texlab_core.methods.de_bonet.quadtree import Grid
 from texlab_core.work.tasks import finish
 
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
+    from texlab_core.methods.de_bonet.layout import Layout
 
-Coarsest = Literal["shift", "tile", "iid"]
 Progress = tuple[int, int]
 
 # A kernel returns after about this many comparisons: a few milliseconds.
@@ -98,15 +99,15 @@ class Sampling:
         return row
 
 
-def prepare(
+def prepare_steps(
     analysis: Analysis,
     thresholds: NDArray[np.float32],
     size: tuple[int, int],
     *,
-    coarsest: Coarsest,
+    layout: Layout,
     literal_levels: int,
     streams: Streams,
-) -> Sampling:
+) -> Generator[None, None, Sampling]:
     """Allocate a sampling and lay out its coarsest level.
 
     Parameters
@@ -115,16 +116,16 @@ def prepare(
         (N, J) float32.
     size
         Height and width that the output must at least have.
-    coarsest
-        How the exemplar's coarsest level is repeated: every repetition shifted cyclically at random, plainly
-        tiled, or every location drawn at random. An output no larger than the exemplar is not shifted.
+    layout
+        What the coarsest level is made of.
     literal_levels
         How many of the coarsest sampled levels take all children of a match as candidates.
     """
     grid = Grid.covering(*size, analysis.depth)
     depth = grid.depth
     sources = [np.empty(grid.count(level), np.int32) for level in range(depth)]
-    sources.append(_lay_out(analysis.grid, grid, coarsest, streams.key("coarsest")))
+    laying = lay_out_steps(analysis.seams, analysis.grid, analysis.whole, grid, layout, streams)
+    sources.append((yield from laying))
     matches = [np.empty(grid.count(level) if level else 0, np.int32) for level in range(depth + 1)]
     literal = tuple(level >= depth - literal_levels for level in range(depth))
     keys = tuple(streams.key("choice", level) for level in range(depth))
@@ -219,31 +220,6 @@ def _defer_from(sampling: Sampling) -> int:
         return np.iinfo(np.int64).max
     parents = sampling.analysis.grid.count(2)
     return max(64, int(4 * parents**0.5))
-
-
-def _lay_out(exemplar: Grid, output: Grid, coarsest: Coarsest, key: int) -> NDArray[np.int32]:
-    """Return the source of every location of the coarsest level, (Q,) int32."""
-    row, column = np.divmod(np.arange(output.rows * output.columns, dtype=np.int64), output.columns)
-    fits = output.rows <= exemplar.rows and output.columns <= exemplar.columns
-    if coarsest == "iid":
-        return _hashed(key, row, column, exemplar.rows * exemplar.columns).astype(np.int32)
-    if coarsest == "shift" and not fits:
-        tile_row, tile_column = row // exemplar.rows, column // exemplar.columns
-        shift = _hashed(key, tile_row, tile_column, exemplar.rows * exemplar.columns)
-        row, column = row + shift // exemplar.columns, column + shift % exemplar.columns
-    source: NDArray[np.int64] = row % exemplar.rows * exemplar.columns + column % exemplar.columns
-    return source.astype(np.int32)
-
-
-def _hashed(key: int, row: NDArray[np.int64], column: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return a number in 0 .. count - 1 for each place, the same wherever the place is asked for."""
-    value = (row.astype(np.uint64) << np.uint64(32)) + column.astype(np.uint64)
-    with np.errstate(over="ignore"):
-        value = (value + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(key)
-        value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        value = (value ^ (value >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    value ^= value >> np.uint64(31)
-    return ((value >> np.uint64(32)) * np.uint64(count) >> np.uint64(32)).astype(np.int64)
 
 
 def match_chain(sampling: Sampling, level: int, place: int) -> list[NDArray[np.int32]]:
