@@ -10,6 +10,7 @@ Reference: De Bonet 1997, section 4.3, for ``tile``; the others go beyond it.
 
 from __future__ import annotations
 
+import heapq
 import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -180,6 +181,27 @@ def _patches(
             yield _Region(part[:, number == each], chosen - chosen.min(1, keepdims=True))
 
 
+def _connected(regions: list[_Region], output: Grid, periodic: bool) -> Iterator[_Region]:
+    """Yield the regions in their order, but each (the first apart) only when a neighbour of it has come before."""
+    number = np.empty((output.rows, output.columns), np.int64)
+    for index, region in enumerate(regions):
+        number[region.cells[0], region.cells[1]] = index
+    beside: list[set[int]] = [set() for _ in regions]
+    for axis in (0, 1):
+        kept = range(number.shape[axis] if periodic else number.shape[axis] - 1)
+        pairs = np.stack([each.take(kept, axis).ravel() for each in (number, np.roll(number, -1, axis))])
+        for one, other in np.unique(pairs[:, pairs[0] != pairs[1]], axis=1).T.tolist():
+            beside[one].add(other)
+            beside[other].add(one)
+    waiting, known = [0], {0}
+    while waiting:
+        index = heapq.heappop(waiting)
+        yield regions[index]
+        for each in beside[index] - known:
+            known.add(each)
+            heapq.heappush(waiting, each)
+
+
 def _place(
     seams: Seams,
     regions: Iterator[_Region],
@@ -194,7 +216,7 @@ def _place(
     taken = np.full((2, output.rows, output.columns), -1, np.int64)
     cyclic = layout.coarsest == "fit"
     extent = np.array([seams.rows, seams.columns])
-    for count, region in enumerate(regions):
+    for count, region in enumerate(_connected(list(regions), output, layout.periodic)):
         places = _places(region, room, cyclic, random)
         cost, same = np.zeros(places.shape[1]), np.zeros(places.shape[1], np.bool_)
         neighbours = 0
