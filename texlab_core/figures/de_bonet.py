@@ -66,29 +66,30 @@ def features() -> NDArray[np.uint8]:
 
 
 def coarsest() -> NDArray[np.uint8]:
-    """Show how the coarsest level is laid out: tiled from one pixel, shifted, drawn at random."""
+    """Show how the coarsest level is laid out: as in the paper, at random, and so that it continues itself."""
     exemplar = texture("structured-shingle", 96)
     tiles = [Tile(exemplar.pixels, ("exemplar",))]
     layouts: dict[str, dict[str, Any]] = {
         "tile, 1 pixel": {"coarsest": "tile", "coarsest_side": 1, "fit_filters": False},
-        "shift, 8 pixels": {"coarsest": "shift", "coarsest_side": 8},
-        "shift, 4 pixels": {"coarsest": "shift", "coarsest_side": 4, "fit_filters": False},
-        "iid, 8 pixels": {"coarsest": "iid", "coarsest_side": 8},
+        "shift": {"coarsest": "shift"},
+        "iid": {"coarsest": "iid"},
+        "fit, border smooth": {"coarsest": "fit", "border": "smooth"},
+        "patches": {"coarsest": "patches"},
     }
     for caption, values in layouts.items():
         result = make("de-bonet", exemplar, 240, **values)
         tiles.append(Tile(result.image, (caption, evidence(result))))
-    return page(tiles, 5)
+    return page(tiles, 3)
 
 
 def literal_sum() -> NDArray[np.uint8]:
-    """Show eq. 10 with the four choices of Z."""
+    """Show eq. 10 with the five choices of Z."""
     exemplar = texture("stochastic-gravel", 96)
     tiles = [Tile(exemplar.pixels, ("exemplar",))]
-    for choice in ("variance", "level", "range", "sum"):
+    for choice in ("variance", "level", "range", "sum", "printed"):
         result = make("de-bonet", exemplar, 192, normalization=choice)
         tiles.append(Tile(result.image, (f"normalization {choice}", evidence(result))))
-    return page(tiles, 5)
+    return page(tiles, 3)
 
 
 def works_and_fails() -> NDArray[np.uint8]:
@@ -111,6 +112,6 @@ FIGURES = (
     Figure("de-bonet-alpha-beta.jpg", "alpha across, beta down.", alpha_beta),
     Figure("de-bonet-features.jpg", "What the parent structures have to hold.", features),
     Figure("de-bonet-coarsest.jpg", "How the coarsest level is laid out.", coarsest),
-    Figure("de-bonet-normalization.jpg", "Eq. 10 with four choices of Z.", literal_sum),
+    Figure("de-bonet-normalization.jpg", "Eq. 10 with five choices of Z.", literal_sum),
     Figure("de-bonet-results.jpg", "Where the method works, and where it cannot.", works_and_fails),
 )

@@ -33,7 +33,7 @@ _MOST_PLACES = 512
 # Patches between two looks.
 _AT_ONCE = 16
 # How far the middle of a patch may lie from its place in the pattern, as a share of the patch.
-_JITTER = 0.33
+_JITTER = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +56,7 @@ class Layout:
     """
 
     coarsest: Coarsest = "patches"
-    patch: float = 0.5
+    patch: float = 0.45
     places: int = 3
     periodic: bool = False
 

@@ -100,10 +100,10 @@ class DeBonetParams(Params):
             high=1,
             step=0.05,
             when=("coarsest", ("patches",)),
-            formerly=0.5,
+            formerly=0.45,
             group="Layout",
         ),
-    ] = 0.5
+    ] = 0.45
     places: Annotated[
         int,
         Knob(
