@@ -115,9 +115,10 @@ def test_choices_stay_when_alpha_moves_a_little(
     if deferred:
         monkeypatch.setattr(sampling_module, "_defer_from", lambda sampling: 64)
     pixels = cartoon(grain=grain)
-    one, other = (made(pixels, (256, 256), alpha=alpha) for alpha in (0.15, 0.155))
+    # Of the layout nothing changes; under whole repetitions most of the flat ground is sampled by proposals.
+    one, other = (made(pixels, (256, 256), alpha=alpha, coarsest="shift") for alpha in (0.15, 0.155))
     if deferred:
-        assert (one.details.sampling.matches[1] < 0).mean() > 0.1
+        assert (one.details.sampling.matches[1] < 0).mean() > 0.2
     changed = (one.maps["source"].data != other.maps["source"].data).any(-1)
     assert changed.mean() <= 0.05
 
@@ -130,7 +131,7 @@ def test_neither_rejection_nor_its_threshold_changes_bits(
     for siblings in ("parity", "literal"):
         knobs = {"alpha": 0.3, "siblings": siblings, "coarsest": coarsest}
         deferred = made(cartoon(grain=0.01), (128, 160), seed, **knobs)
-        assert (deferred.details.sampling.matches[1] < 0).mean() > 0.1
+        assert (deferred.details.sampling.matches[1] < 0).mean() > 0.05
         monkeypatch.setattr(sampling_module, "_defer_from", lambda sampling: 10**9)
         listed = made(cartoon(grain=0.01), (128, 160), seed, **knobs)
         monkeypatch.undo()

@@ -169,7 +169,7 @@ def _patches(
     bounds = [0, *(np.flatnonzero(np.diff(label[order])) + 1).tolist(), order.size]
     for first, last in itertools.pairwise(bounds):
         part, off = cells[:, first:last], offset[:, first:last]
-        inside = np.round(off - off.min(1, keepdims=True)).astype(np.int64)
+        inside = np.ascontiguousarray(np.round(off - off.min(1, keepdims=True)), np.int64)
         if inside[0].max() < room[0] and inside[1].max() < room[1]:
             yield _Region(np.ascontiguousarray(part), inside)
             continue
@@ -178,7 +178,8 @@ def _patches(
         number = boxes[0] * (boxes[1].max() + 1) + boxes[1]
         for each in np.unique(number):
             chosen = inside[:, number == each]
-            yield _Region(part[:, number == each], chosen - chosen.min(1, keepdims=True))
+            lower = np.ascontiguousarray(chosen - chosen.min(1, keepdims=True))
+            yield _Region(np.ascontiguousarray(part[:, number == each]), lower)
 
 
 def _connected(regions: list[_Region], output: Grid, periodic: bool) -> Iterator[_Region]:
