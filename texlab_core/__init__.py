@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from texlab_core.api import available_methods, synthesize
     from texlab_core.documents.record import read_recipe, save_result
     from texlab_core.engine.cache import AnalysisCache
-    from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput
+    from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, exemplar_of
     from texlab_core.engine.job import Job
     from texlab_core.engine.params import Knob, Params, describe
     from texlab_core.engine.registry import InputSpec, Method, find_method, register
     from texlab_core.engine.result import Result
+    from texlab_core.engine.run import run
     from texlab_core.engine.steps import Curve, Map, Output, Step
     from texlab_core.engine.streams import Streams
     from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
@@ -31,11 +32,12 @@ _HOMES = {
     "api": ("available_methods", "synthesize"),
     "documents.record": ("read_recipe", "save_result"),
     "engine.cache": ("AnalysisCache",),
-    "engine.inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput"),
+    "engine.inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput", "exemplar_of"),
     "engine.job": ("Job",),
     "engine.params": ("Knob", "Params", "describe"),
     "engine.registry": ("InputSpec", "Method", "find_method", "register"),
     "engine.result": ("Result",),
+    "engine.run": ("run",),
     "engine.steps": ("Curve", "Map", "Output", "Step"),
     "engine.streams": ("Streams",),
     "errors": ("Cancelled", "ImageError", "InputError", "ParamError", "RecipeError"),
@@ -68,9 +70,11 @@ __all__ = [
     "as_exemplar",
     "available_methods",
     "describe",
+    "exemplar_of",
     "find_method",
     "read_recipe",
     "register",
+    "run",
     "save_result",
     "synthesize",
 ]

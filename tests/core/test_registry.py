@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import pkgutil
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,11 +13,11 @@ import pytest
 
 import texlab_core.methods
 from tests.core.toy import noise_method
-from texlab_core.engine import registry
+from texlab_core.engine import plugins, registry
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 
 @pytest.fixture
@@ -65,3 +67,87 @@ def test_an_unknown_method_is_refused_with_the_closest_one(empty: None) -> None:
         registry.find_method("zzz")
     with pytest.raises(ParamError, match=r"got \['toy-noise'\]\.$"):
         registry.find_method(["toy-noise"])  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def packages(empty: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Return a function that installs packages, each a module with an entry point, in a folder of the test's."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def install(name: str, code: str, group: str = "texlab_core.methods") -> None:
+        module = name.replace("-", "_")
+        (tmp_path / f"{module}.py").write_text(code, "utf-8")
+        info = tmp_path / f"{module}-1.0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n", "utf-8")
+        (info / "entry_points.txt").write_text(f"[{group}]\nany = {module}\n", "utf-8")
+        monkeypatch.delitem(sys.modules, module, raising=False)
+        importlib.invalidate_caches()
+
+    return install
+
+
+GOOD = """
+from tests.core.toy import noise_method
+from texlab_core.engine.registry import register
+register(noise_method(id="good-noise", title="Good noise"))
+"""
+
+
+def test_a_method_of_another_package_is_found_and_named_with_it(packages: Callable[..., None]) -> None:
+    packages("texlab-good", GOOD)
+    packages("texlab-other", GOOD, "texlab_core.measures")
+    method = registry.find_method("good-noise")
+    assert method.package == "texlab-good"
+    assert method.title == "Good noise (texlab-good)"
+    assert registry.failures() == ()
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        ("import no_such_module", "ModuleNotFoundError: No module named 'no_such_module'"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("def broken(:", "SyntaxError"),
+        ("import sys; sys.exit(3)", "SystemExit: 3"),
+        (GOOD + "raise RuntimeError('too\\nlate')", "RuntimeError: too late"),
+        (GOOD.replace("good-noise", "uncommon") + GOOD.replace("good-noise", "uncommon"), "registered already"),
+        (GOOD.replace('title="Good noise"', "params=int"), "TypeError"),
+    ],
+    ids=["import", "error", "syntax", "exit", "late", "twice", "no-params"],
+)
+def test_what_is_broken_is_left_out_and_named(packages: Callable[..., None], code: str, reason: str) -> None:
+    packages("texlab-broken", code)
+    packages("texlab-good", GOOD)
+    assert list(registry.methods()) == ["good-noise"]
+    (failure,) = registry.failures()
+    assert failure.source == plugins.Source("texlab-broken", "texlab_broken")
+    assert reason in failure.reason
+    assert failure.sentence.startswith("The methods of texlab-broken in texlab_broken are left out, since ")
+    assert "\n" not in failure.sentence
+    with pytest.raises(ParamError, match=r"what texlab-broken adds could not be loaded\), got 'uncommon'"):
+        registry.find_method("uncommon")
+
+
+def test_a_file_of_our_own_that_cannot_be_imported_is_left_out(
+    empty: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "broken_one.py").write_text("import no_such_module", "utf-8")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "__init__.py").write_text("", "utf-8")
+    (tmp_path / "folder" / "method_two.py").write_text("1 / 0", "utf-8")
+    (tmp_path / "folder" / "method_three.py").write_text(GOOD, "utf-8")
+    (tmp_path / "_parts.py").write_text("1 / 0", "utf-8")
+    monkeypatch.setattr(texlab_core.methods, "__path__", [str(tmp_path)])
+    assert list(registry.methods()) == ["good-noise"]
+    assert registry.methods()["good-noise"].package == "texlab"
+    assert [(each.source.package, each.source.module) for each in registry.failures()] == [
+        ("texlab", "texlab_core.methods.broken_one"),
+        ("texlab", "texlab_core.methods.folder.method_two"),
+    ]
+    for name in [name for name in sys.modules if name.startswith("texlab_core.methods.folder")]:
+        monkeypatch.delitem(sys.modules, name)
+
+
+def test_nothing_of_ours_is_broken() -> None:
+    assert registry.failures() == ()

@@ -30,7 +30,7 @@ from texlab.window.help_desk import HelpDesk
 from texlab.window.opener import Opener
 from texlab.window.presenter import Presenter
 from texlab_core.engine.inputs import Crop
-from texlab_core.engine.registry import methods
+from texlab_core.engine.registry import failures, methods
 from texlab_core.sheets.comparison import FIRST_SIGHT
 
 if TYPE_CHECKING:
@@ -105,6 +105,9 @@ class Explorer(QObject):
         place = place if isinstance(place, int) and 0 <= place < len(made) else 0
         self.handlers.select(made[place].id)
         self.session.reset_history()
+        if broken := " ".join(each.sentence for each in failures()):
+            log.warning(broken)
+            tell(broken)
         self._open_first(source, saved)
 
     def _open_first(self, source: str | None, saved: Any) -> None:

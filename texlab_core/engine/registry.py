@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import difflib
 import functools
-import importlib
+import importlib.util
 import pkgutil
-from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
+from texlab_core.engine.params import describe
+from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Source, entry_points, load, own_modules
 from texlab_core.engine.steps import FloatImage, Output, Step
 from texlab_core.errors import ParamError
 
@@ -71,6 +73,8 @@ class Method:
         Ids of the registered measures that its outputs carry.
     random
         False when no bit of the result depends on the seed.
+    package
+        Who declares it; filled in when it is found.
     """
 
     id: str
@@ -88,9 +92,12 @@ class Method:
     order: int = 100
     measures: tuple[str, ...] = ()
     random: bool = True
+    package: str = OWN_PACKAGE
 
 
+ENTRY_POINTS = "texlab_core.methods"
 _METHODS: dict[str, Method] = {}
+_FAILURES: list[Failure] = []
 
 
 def register(method: Method) -> Method:
@@ -103,16 +110,44 @@ def register(method: Method) -> Method:
 
 @functools.cache
 def methods() -> Mapping[str, Method]:
-    """Return every registered method by id, in their order; imports what declares them once."""
-    package = importlib.import_module("texlab_core.methods")
-    for each in pkgutil.iter_modules(package.__path__):
-        module = importlib.import_module(f"{package.__name__}.{each.name}")
-        if each.ispkg:
-            for inner in pkgutil.iter_modules(module.__path__):
-                if inner.name.split("_")[0] == "method":
-                    importlib.import_module(f"{module.__name__}.{inner.name}")
+    """Return every registered method by id, in their order; imports what declares them once.
+
+    These are the files and folders of ``methods/``, then the modules that other installed packages name as entry
+    points of the group ``texlab_core.methods``. What cannot be used is left out; :func:`failures` says why.
+    """
+    tried = [
+        load(source, _METHODS, _accepted, what="methods") for source in (*_own(), *entry_points(ENTRY_POINTS))
+    ]
+    _FAILURES[:] = [each for each in tried if each is not None]
     ordered = sorted(_METHODS.values(), key=lambda method: (method.order, method.id))
     return MappingProxyType({method.id: method for method in ordered})
+
+
+def failures() -> tuple[Failure, ...]:
+    """Return what could not be used, of our own and of other packages."""
+    methods()
+    return tuple(_FAILURES)
+
+
+def _own() -> Iterator[Source]:
+    package = "texlab_core.methods"
+    for source in own_modules(package):
+        spec = importlib.util.find_spec(source.module)
+        if spec is None or spec.submodule_search_locations is None:
+            yield source
+            continue
+        for inner in pkgutil.iter_modules(spec.submodule_search_locations):
+            if inner.name.split("_")[0] == "method":
+                yield Source(source.package, f"{source.module}.{inner.name}")
+
+
+def _accepted(method: Method, package: str) -> Method:
+    """Return a method with its package, which stands in its title too; raises ``TypeError`` for unusable knobs."""
+    describe(method.params)
+    method.params()
+    if package == OWN_PACKAGE:
+        return method
+    return replace(method, title=f"{method.title} ({package})", package=package)
 
 
 def find_method(name: str) -> Method:
@@ -128,4 +163,6 @@ def find_method(name: str) -> Method:
         return known[name]
     close = difflib.get_close_matches(str(name), known, n=1)
     hint = f" (did you mean {close[0]}?)" if close else ""
+    if broken := sorted({failure.source.package for failure in failures()}):
+        hint += f" (what {' and '.join(broken)} adds could not be loaded)"
     raise ParamError("method", f"one of {', '.join(known)}{hint}", name)

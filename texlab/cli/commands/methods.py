@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._knobs import _default, _wrap, knobs
+from texlab.cli.terminal import complain
 
 if TYPE_CHECKING:
     import argparse
@@ -25,8 +26,10 @@ def configure(parser: Parser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print the list, or one method."""
-    from texlab_core.engine.registry import find_method, methods
+    from texlab_core.engine.registry import failures, find_method, methods
 
+    for failure in failures():
+        complain(failure.sentence)
     chosen = [find_method(args.method)] if args.method else list(methods().values())
     if args.json:
         import json
@@ -57,6 +60,7 @@ def as_json(method: Method) -> dict[str, Any]:
     return {
         "id": method.id,
         "title": method.title,
+        "package": method.package,
         "summary": method.summary,
         "reference": method.reference,
         "fails_on": list(method.fails_on),

@@ -1,0 +1,1 @@
+"""A method for TexLab: stripes with the colours of the exemplar."""

@@ -1,0 +1,71 @@
+"""Small jobs to hold methods to their promises, and what a broken promise is called."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from texlab_core.engine.job import Job
+from texlab_core.images.exemplar import as_exemplar
+
+if TYPE_CHECKING:
+    from texlab_core.engine.inputs import ImageInput, Input
+    from texlab_core.engine.registry import Method
+    from texlab_core.engine.steps import FloatImage
+
+
+class Broken(AssertionError):
+    """A promise that a method does not keep; one sentence for whoever writes the method."""
+
+
+def promise(kept: object, sentence: str) -> None:
+    """Raise ``Broken`` unless a promise is kept."""
+    if not kept:
+        raise Broken(sentence)
+
+
+def texture(height: int, width: int, channels: int = 3) -> ImageInput:
+    """Return blobs of correlated colour, the same ones on every call."""
+    rng = np.random.Generator(np.random.PCG64(height * 1000 + width))
+    white = rng.standard_normal((height, width, channels))
+    rows = np.exp(-0.5 * (np.fft.fftfreq(height) / 0.15) ** 2)[:, None, None]
+    columns = np.exp(-0.5 * (np.fft.fftfreq(width) / 0.08) ** 2)[None, :, None]
+    smooth = np.fft.ifft2(np.fft.fft2(white, axes=(0, 1)) * rows * columns, axes=(0, 1)).real
+    if channels == 3:
+        smooth = smooth @ np.array([[1.0, 0.6, 0.2], [0.0, 0.5, 0.1], [0.0, 0.1, 0.4]])
+    low, high = smooth.min(), smooth.max()
+    return as_exemplar(((smooth - low) / max(high - low, 1e-9)).astype(np.float32))
+
+
+def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> Job:
+    """Return a job of the method on a small colour texture; another one stands for every other image it needs."""
+    exemplar = texture(24, 32) if exemplar is None else exemplar
+    inputs: dict[str, Input] = {}
+    for spec in method.inputs:
+        if spec.name == "exemplar":
+            inputs[spec.name] = exemplar
+        elif spec.required:
+            promise(
+                spec.kind == "image",
+                f"the input {spec.name} is required, and these checks can make images only; give it a default.",
+            )
+            inputs[spec.name] = texture(21, 26, exemplar.channels)
+    given: dict[str, Any] = {"method": method.id, "inputs": inputs} | changes
+    return Job(**given)
+
+
+def check_image(image: FloatImage, shape: tuple[int, ...], what: str) -> None:
+    """Check what every image that leaves a method is: float32 in [0, 1], of this shape."""
+    promise(isinstance(image, np.ndarray), f"{what} must be an array, got {type(image).__name__}.")
+    promise(image.dtype == np.float32, f"{what} must be float32, got {image.dtype}.")
+    promise(image.shape == shape, f"{what} must have the shape {shape}, got {image.shape}.")
+    promise(np.isfinite(image).all(), f"{what} must hold finite values only.")
+    low, high = float(image.min()), float(image.max())
+    promise(low >= 0 and high <= 1, f"{what} must lie in 0 to 1, got {low:g} to {high:g}.")
+
+
+def check_sentence(text: str, what: str) -> None:
+    """Check that a text is one sentence for people."""
+    good = text and text == text.strip() and "\n" not in text and text.endswith((".", "?"))
+    promise(good, f"{what} must be one sentence on one line that ends with a full stop, got {text!r}.")
