@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from texlab.columns.status import status_parts
 from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.plain import set_tip
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine, strut
 
@@ -69,7 +70,7 @@ class ColumnView(QFrame):
         self.method_box = ShortBox()
         self.method_box.setObjectName(f"method-{column_id}")
         self.method_box.setAccessibleName("Method of this column")
-        self.method_box.setToolTip("The method of this column")
+        set_tip(self.method_box, "The method of this column")
         for identifier, title in methods:
             self.method_box.addItem(title, identifier)
         self.run_button = self._button("▶", "Run this column again", "run")
@@ -127,7 +128,7 @@ class ColumnView(QFrame):
     def _button(self, text: str, tip: str, name: str) -> QToolButton:
         button = QToolButton()
         button.setText(text)
-        button.setToolTip(tip)
+        set_tip(button, tip)
         button.setAccessibleName(tip)
         button.setAutoRaise(True)
         button.setObjectName(f"{name}-{self.column_id}")

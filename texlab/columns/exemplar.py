@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
+from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
 
 from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine, strut
 from texlab_core.engine.inputs import Crop
@@ -54,7 +55,7 @@ class ExemplarView(QFrame):
         super().__init__(parent)
         self.setObjectName("column")
         self.setMinimumWidth(140)
-        self.title = QLabel("Exemplar")
+        self.title = Label("Exemplar")
         self.title.setObjectName("exemplar-title")
         self.title.setProperty("role", "heading")
         self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
@@ -63,16 +64,18 @@ class ExemplarView(QFrame):
         self.crop_button.setText("Crop")
         self.crop_button.setCheckable(True)
         self.crop_button.setAutoRaise(False)
-        self.crop_button.setToolTip(
+        set_tip(
+            self.crop_button,
             "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
-            "with Shift they resize it."
+            "with Shift they resize it.",
         )
         self.scale_box = QDoubleSpinBox()
         self.scale_box.setObjectName("scale-box")
         self.scale_box.setAccessibleName("Scale of the exemplar")
-        self.scale_box.setToolTip(
+        set_tip(
+            self.scale_box,
             "Scale of the picture before it is cropped. Photographs are usually too large for these methods: "
-            "a texture element should be 10 to 40 pixels wide."
+            "a texture element should be 10 to 40 pixels wide.",
         )
         self.scale_box.setRange(0.01, 1.0)
         self.scale_box.setDecimals(3)
@@ -124,7 +127,7 @@ class ExemplarView(QFrame):
     def show_choice(self, name: str, parts: Sequence[str], scale: float, crop: Crop | None) -> None:
         """Show name, size and notes, scale and crop without emitting anything."""
         self._name = name
-        self.title.setToolTip(name)
+        set_tip(self.title, name)
         self._elide()
         self.line.show_parts(parts)
         with QSignalBlocker(self.scale_box):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
@@ -15,6 +15,7 @@ from texlab.docks.recent import Same
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number
 from texlab.widgets.heat_map import HeatMap
+from texlab.widgets.plain import Label, MarkupLabel, escaped, set_tip
 from texlab.widgets.plots import SERIES, Plot
 from texlab_core.engine.steps import Curve
 
@@ -145,7 +146,7 @@ class ConvergenceDock(FramedDock):
         self.iteration.valueChanged.connect(self._show_heat)
         tip = "Iteration that the heat map shows"
         self.add_control(self.iteration, "iteration", "Iteration of the heat map", tip)
-        self.iteration_label = QLabel("")
+        self.iteration_label = Label("")
         self.add_control(self.iteration_label, "iteration-label", "Iteration of the heat map", tip)
         self.readout = self.add_readout()
 
@@ -153,16 +154,16 @@ class ConvergenceDock(FramedDock):
         self.plot.hovered.connect(self._hover_curve)
         self.plot.left.connect(lambda: self.readout.setText(""))
         self.all = Plot("convergence-all", "All curves of the chosen column")
-        self.all.setToolTip("All curves of the chosen column; the chosen one is thick")
+        set_tip(self.all, "All curves of the chosen column; the chosen one is thick")
         self.heat = HeatMap("convergence-heat", "Distance by level and orientation")
-        self.heat.setToolTip(
-            "Distance of every subband, levels down and orientations across; click or arrow keys show its curve"
+        set_tip(
+            self.heat,
+            "Distance of every subband, levels down and orientations across; click or arrow keys show its curve",
         )
         self.heat.chosen.connect(self._choose_cell)
         self.heat.hovered.connect(self._hover_cell)
-        self.legend = QLabel("")
+        self.legend = MarkupLabel()
         self.legend.setObjectName("convergence-legend")
-        self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)
         first = QWidget()
         column = QVBoxLayout(first)
@@ -275,10 +276,12 @@ class ConvergenceDock(FramedDock):
         words = []
         strokes = {"solid": "━━", "dash": "╍╍", "dot": "┅┅"}
         for (title, here, curve), (role, line) in zip(answer.overlaid, _styles(len(answer.overlaid)), strict=True):
-            name = f"<b>{title}</b>" if here else title
+            name = f"<b>{escaped(title)}</b>" if here else escaped(title)
             last = number(float(curve.y[-1])) if curve.y.size else ""
             words.append(f"<span style='color:{getattr(self.theme, role)}'>{strokes[line]}</span> {name} {last}")
-        words += [f"{strokes['dash']} {each.title} {number(float(each.y[-1]))}" for each in answer.references]
+        words += [
+            f"{strokes['dash']} {escaped(each.title)} {number(float(each.y[-1]))}" for each in answer.references
+        ]
         self.legend.setText("&nbsp;&nbsp; ".join(words))
 
     def _show_heat(self, *_: object) -> None:

@@ -8,7 +8,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QLabel,
     QPushButton,
     QSizePolicy,
     QSpinBox,
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Dock
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import Readout
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class FramedDock(Dock):
         self._line = FlowLayout(self.controls)
         self.body = QWidget()
         self.body.setObjectName(f"{self.name}-body")
-        self._message = QLabel(self.empty)
+        self._message = Label(self.empty)
         self._message.setObjectName(f"{self.name}-message")
         self._message.setProperty("role", "muted")
         self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -132,7 +132,7 @@ class FramedDock(Dock):
         """Put a widget into the line of controls."""
         control.setObjectName(f"{self.name}-{name}")
         control.setAccessibleName(label)
-        control.setToolTip(tip)
+        set_tip(control, tip)
         self._line.addWidget(control)
 
     def add_choice(

@@ -10,7 +10,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QHBoxLayout,
-    QLabel,
     QListWidget,
     QListWidgetItem,
     QSlider,
@@ -25,6 +24,7 @@ from texlab.docks.recent import Same
 from texlab.style import colouring
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar, pg
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ class MapsDock(FramedDock):
         self.regions = QListWidget()
         self.regions.setObjectName("maps-regions")
         self.regions.setAccessibleName("Largest regions")
-        self.regions.setToolTip("The largest regions; choose one to see it alone, choose it again to see all")
+        set_tip(self.regions, "The largest regions; choose one to see it alone, choose it again to see all")
         self.regions.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.regions.itemActivated.connect(self._choose_region)
         self.regions.itemClicked.connect(self._choose_region)
@@ -110,14 +110,14 @@ class MapsDock(FramedDock):
         key_layout = QVBoxLayout(key_page)
         key_layout.setContentsMargins(0, 0, 0, 0)
         key_layout.addWidget(self.key, 1)
-        key_label = QLabel("Place in the exemplar")
+        key_label = Label("Place in the exemplar")
         key_label.setProperty("role", "muted")
         key_layout.addWidget(key_label)
         bar_page = QWidget()
         bar_layout = QVBoxLayout(bar_page)
         bar_layout.setContentsMargins(0, 0, 0, 0)
         bar_layout.addWidget(self.bar, 1)
-        self.unit = QLabel()
+        self.unit = Label()
         self.unit.setObjectName("maps-unit")
         self.unit.setProperty("role", "muted")
         bar_layout.addWidget(self.unit)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtWidgets import QLabel, QSizePolicy, QSlider, QVBoxLayout
+from PySide6.QtWidgets import QSizePolicy, QSlider, QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +51,7 @@ class StepsDock(FramedDock):
             "speed", "Speed", "How fast to play", [(text, rate) for rate, text in SPEEDS], self._take_speed
         )
         self.speed.setCurrentIndex(1)
-        self.label = QLabel("")
+        self.label = Label("")
         self.label.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.label.setMinimumWidth(150)
         self.add_control(

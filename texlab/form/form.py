@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
@@ -10,7 +9,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QGridLayout,
-    QLabel,
     QSlider,
     QSpinBox,
     QToolButton,
@@ -18,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, editor_of
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
 
@@ -26,22 +25,18 @@ if TYPE_CHECKING:
 
 
 def tooltip(field: Field) -> str:
-    """Return what a knob does, its range and default, and where it stands in the paper, as rich text."""
+    """Return what a knob does, its range and default, and where it stands in the paper."""
     knob = field.knob
-    default = field.default
-    shown = "its own" if field.kind == "value" else default
-    lines = [f"<b>{html.escape(field.label)}</b><br>{html.escape(knob.help)}"]
-    if field.kind == "choice":
-        for choice in field.choices:
-            lines.append(f"<i>{html.escape(choice)}</i>: {html.escape(knob.choices.get(choice, ''))}")
-    unit = f" {knob.unit}" if knob.unit else ""
+    lines = [field.label, knob.help]
+    lines += [f"{choice}: {knob.choices.get(choice, '')}" for choice in field.choices]
     if field.kind in ("int", "float"):
-        lines.append(f"{html.escape(field.allowed)}{html.escape(unit)}; default {shown}")
+        unit = f" {knob.unit}" if knob.unit else ""
+        lines.append(f"{field.allowed}{unit}; default {field.default}")
     elif field.kind != "value":
-        lines.append(f"Default: {html.escape(str(shown))}")
+        lines.append(f"Default: {field.default}")
     if knob.source:
-        lines.append(f"<i>{html.escape(knob.source)}</i>")
-    return "<qt>" + "<br>".join(lines) + "</qt>"
+        lines.append(knob.source)
+    return "\n".join(lines)
 
 
 class WheelGuard(QObject):
@@ -72,11 +67,11 @@ class ParameterForm(QWidget):
         self._params = params_class()
         self.fields = {field.name: field for field in describe(params_class)}
         self.knobs: dict[str, KnobWidget] = {}
-        self._labels: dict[str, QLabel] = {}
+        self._labels: dict[str, Label] = {}
         self._resets: dict[str, QToolButton] = {}
         self._error_rows: dict[str, int] = {}
         self._row = 0
-        self._error = QLabel()
+        self._error = Label()
         self._error.setObjectName("form-error")
         self._error.setProperty("role", "error")
         self._error.setWordWrap(True)
@@ -90,7 +85,7 @@ class ParameterForm(QWidget):
         for field in self.fields.values():
             if field.knob.group and field.knob.group != group:
                 group = field.knob.group
-                heading = QLabel(group)
+                heading = Label(group)
                 heading.setProperty("role", "heading")
                 heading.setContentsMargins(0, 8, 0, 0)
                 self._layout.addWidget(heading, self._row, 0, 1, 2)
@@ -99,7 +94,7 @@ class ParameterForm(QWidget):
         self._layout.addWidget(self._error, self._row, 0, 1, 2)
         self._layout.setRowStretch(self._row + 1, 1)
         if not self.fields:
-            self._layout.addWidget(QLabel("This method has no parameters."), 0, 0)
+            self._layout.addWidget(Label("This method has no parameters."), 0, 0)
         self.set_params(self._params)
 
     @property
@@ -140,19 +135,19 @@ class ParameterForm(QWidget):
         if knob is None:
             return
         knob.setObjectName(f"knob-{field.name}")
-        knob.setToolTip(tooltip(field))
+        set_tip(knob, tooltip(field))
         for child in knob.findChildren(QWidget):
             if isinstance(child, QSlider | QSpinBox | QDoubleSpinBox | QComboBox):
                 child.installEventFilter(self._guard)
                 child.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        label = QLabel(field.label)
-        label.setToolTip(tooltip(field))
+        label = Label(field.label)
+        set_tip(label, tooltip(field))
         label.setBuddy(knob)
         reset = QToolButton()
         reset.setObjectName(f"reset-{field.name}")
         reset.setText("↺")
         reset.setAutoRaise(True)
-        reset.setToolTip(f"Reset {field.label} to its default")
+        set_tip(reset, f"Reset {field.label} to its default")
         reset.setAccessibleName(f"Reset {field.label}")
         # A knob must not move when it leaves its default.
         policy = reset.sizePolicy()

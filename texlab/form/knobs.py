@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.form.scales import Scale, box_step, decimals
+from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
     from texlab_core.engine.params import Field
@@ -187,7 +188,7 @@ class ChoiceKnob(KnobWidget):
         self.box.setAccessibleName(field.label)
         for place, choice in enumerate(field.choices):
             self.box.addItem(choice.replace("-", " "), choice)
-            self.box.setItemData(place, field.knob.choices.get(choice, ""), Qt.ItemDataRole.ToolTipRole)
+            self.box.setItemData(place, tip_text(field.knob.choices.get(choice, "")), Qt.ItemDataRole.ToolTipRole)
         self.box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

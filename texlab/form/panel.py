@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.form.form import ParameterForm
 from texlab.presets.bar import PresetBar
+from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
     from texlab.state.scene import ColumnScene
@@ -31,20 +32,20 @@ class ParametersView(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("parameters")
-        self.title = QLabel()
+        self.title = Label()
         self.title.setObjectName("parameters-title")
         self.title.setProperty("role", "heading")
         self.title.setWordWrap(True)
-        self.summary = QLabel()
+        self.summary = Label()
         self.summary.setObjectName("parameters-summary")
         self.summary.setProperty("role", "muted")
         self.summary.setWordWrap(True)
         self.reset_button = QPushButton("Reset all")
         self.reset_button.setObjectName("reset-all")
-        self.reset_button.setToolTip("Give every parameter of this column its default")
+        set_tip(self.reset_button, "Give every parameter of this column its default")
         self.help_button = QPushButton("About the method")
         self.help_button.setObjectName("method-help")
-        self.help_button.setToolTip("Open the help page of this method (F1)")
+        set_tip(self.help_button, "Open the help page of this method (F1)")
         self.scroll_area = QScrollArea()
         self.scroll_area.setObjectName("parameters-scroll")
         self.scroll_area.setWidgetResizable(True)

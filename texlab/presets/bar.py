@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
 
+from texlab.widgets.plain import set_tip, tip_text
+
 if TYPE_CHECKING:
     from texlab_core.documents.presets import Preset
 
@@ -36,12 +38,12 @@ class PresetBar(QWidget):
         self.box = QComboBox()
         self.box.setObjectName("preset-box")
         self.box.setAccessibleName("Presets of this method")
-        self.box.setToolTip("Take the parameters of a preset")
+        set_tip(self.box, "Take the parameters of a preset")
         self.box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.button = QToolButton()
         self.button.setObjectName("preset-menu")
         self.button.setText("⋯")
-        self.button.setToolTip("Save, rename, delete, import and export presets")
+        set_tip(self.button, "Save, rename, delete, import and export presets")
         self.button.setAccessibleName("Manage presets")
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
@@ -78,7 +80,7 @@ class PresetBar(QWidget):
             self.box.addItem(_TITLE)
             for place, preset in enumerate(presets):
                 self.box.addItem(preset.name if preset.key not in own else f"{preset.name} (own)")
-                self.box.setItemData(place + 1, preset.note, Qt.ItemDataRole.ToolTipRole)
+                self.box.setItemData(place + 1, tip_text(preset.note), Qt.ItemDataRole.ToolTipRole)
                 if preset.key == current:
                     self.box.setCurrentIndex(place + 1)
         self._update_menu()

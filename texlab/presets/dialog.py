@@ -10,12 +10,12 @@ from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
     QFormLayout,
-    QLabel,
     QLineEdit,
     QPlainTextEdit,
     QWidget,
 )
 
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.documents.presets import MAX_NAME, MAX_NOTE, PresetError, check_name
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class PresetDialog(QDialog):
         self.note.setTabChangesFocus(True)
         self.note.setFixedHeight(4 * self.fontMetrics().lineSpacing())
         self.partial = QCheckBox("Only the parameters that differ from the defaults")
-        self.message = QLabel("")
+        self.message = Label("")
         self.message.setObjectName("preset-dialog-message")
         self.message.setProperty("role", "muted")
         self.message.setWordWrap(True)
@@ -86,7 +86,7 @@ class PresetDialog(QDialog):
         ):
             widget.setObjectName(f"preset-dialog-{part}")
             widget.setAccessibleName(label)
-            widget.setToolTip(tip)
+            set_tip(widget, tip)
         layout = QFormLayout(self)
         layout.addRow("Name", self.name)
         if is_new:

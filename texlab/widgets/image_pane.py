@@ -8,7 +8,8 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter
-from PySide6.QtWidgets import QLabel
+
+from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QEvent, QPoint
@@ -81,7 +82,7 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     # The base class resizes itself while it is made.
     _link: ViewLink | None = None
     _picture: Picture | None = None
-    _note: QLabel | None = None
+    _note: Label | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(parent, background=None)
@@ -140,11 +141,10 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def set_note(self, text: str) -> None:
         """Say something in the place of the picture; nothing with an empty text."""
         if self._note is None and text:
-            self._note = QLabel(self)
+            self._note = Label(parent=self)
             self._note.setObjectName("pane-note")
             self._note.setProperty("role", "error")
             self._note.setWordWrap(True)
-            self._note.setTextFormat(Qt.TextFormat.PlainText)
             self._note.setAlignment(Qt.AlignmentFlag.AlignCenter)
             self._note.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         if self._note is not None:

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.style.numbers import log_ticks
 from texlab.style.theme import configure_pyqtgraph
+from texlab.widgets.plain import escaped, set_tip
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -226,7 +227,8 @@ class Plot(QWidget):
             axis.setTextPen(pg.mkPen(theme.muted))
             axis.setStyle(tickLength=-4, maxTickLevel=0)
             axis.setTickFont(self.font())
-            axis.setLabel(words or None, **{"color": theme.muted, "font-size": size})
+            # pyqtgraph writes labels as markup.
+            axis.setLabel(escaped(words) or None, **{"color": theme.muted, "font-size": size})
             axis.showLabel(bool(words) and self.height() >= ROOM_FOR_LABELS)
 
     def _paint(self, series: _Series, theme: Theme) -> None:
@@ -268,7 +270,7 @@ class ColourBar(QWidget):
         super().__init__(parent)
         self.setObjectName(name)
         self.setAccessibleName("Colour scale")
-        self.setToolTip("Which colour stands for which value")
+        set_tip(self, "Which colour stands for which value")
         self._theme: Theme | None = None
         self._table: NDArray[np.uint8] = np.zeros((2, 3), np.uint8)
         self._ticks: list[tuple[float, str]] = []

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QPalette
-from PySide6.QtWidgets import QLabel, QWidget
+
+from texlab.widgets.plain import Label
+
+if TYPE_CHECKING:
+    from PySide6.QtWidgets import QWidget
 
 
-class Readout(QLabel):
+class Readout(Label):
     """A line of text that lies over a corner of its parent and takes no room in the layout."""
 
     def __init__(self, name: str, parent: QWidget) -> None:
-        super().__init__(parent)
+        super().__init__(parent=parent)
         self._over = parent
         self.setObjectName(name)
         self.setAccessibleName("Value under the cursor")
-        self.setTextFormat(Qt.TextFormat.PlainText)
         self.setAutoFillBackground(True)
         self.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
         self.setForegroundRole(QPalette.ColorRole.ToolTipText)

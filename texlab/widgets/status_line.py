@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QRect, QSize, Qt
-from PySide6.QtWidgets import QLabel, QSizePolicy
+from PySide6.QtWidgets import QSizePolicy
+
+from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,18 +31,17 @@ def strut(model: QWidget) -> QWidget:
     return model
 
 
-class StatusLine(QLabel):
+class StatusLine(Label):
     """Shows parts of a sentence on a fixed number of lines; what does not fit is in the tool tip.
 
     The height is the same whatever is shown: pictures side by side stay at the same level.
     """
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+        super().__init__(parent=parent)
         self._parts: tuple[str, ...] = ()
         self.setProperty("role", "muted")
         self.setWordWrap(True)
-        self.setTextFormat(Qt.TextFormat.PlainText)
         self.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
@@ -49,7 +50,7 @@ class StatusLine(QLabel):
         """Show these parts, the most important first."""
         if tuple(parts) != self._parts:
             self._parts = tuple(parts)
-            self.setToolTip(SEPARATOR.join(self._parts))
+            set_tip(self, SEPARATOR.join(self._parts))
             self._fit()
 
     def sizeHint(self) -> QSize:

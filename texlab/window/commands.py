@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QKeySequence
 
+from texlab.widgets.plain import set_tip
+
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
@@ -80,7 +82,7 @@ def make_actions(owner: QWidget) -> dict[str, QAction]:
         if command.keys:
             action.setShortcut(QKeySequence(command.keys))
         keys = f" ({action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)})" if command.keys else ""
-        action.setToolTip(f"{command.help or plain(command.text)}{keys}")
+        set_tip(action, f"{command.help or plain(command.text)}{keys}")
         action.setStatusTip(command.help)
         made[command.name] = action
         owner.addAction(action)

@@ -8,6 +8,8 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QIcon, QImage, QPixmap
 from PySide6.QtWidgets import QLineEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
+from texlab.widgets.plain import set_tip
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -68,7 +70,7 @@ class GalleryView(QWidget):
                 groups[group] = head
             item = QTreeWidgetItem([title])
             item.setData(0, _NAME, name)
-            item.setToolTip(0, tip)
+            set_tip(item, tip)
             item.setSizeHint(0, QSize(0, THUMBNAIL + 6))
             groups[group].addChild(item)
             self._items[name] = item

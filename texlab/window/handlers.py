@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
+from texlab.widgets.plain import set_tip
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
@@ -167,7 +168,7 @@ class Handlers(QObject):
         menu.setObjectName("new-column-menu")
         for method in methods().values():
             action = menu.addAction(method.title)
-            action.setToolTip(method.summary)
+            set_tip(action, method.summary)
             action.triggered.connect(partial(self._add_column, method.id))
         button = self._window.toolbar.widgetForAction(self._window.actions_by_name["add"])
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint
-from PySide6.QtWidgets import QMessageBox
 
+from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
 from texlab.window.palette import CommandPalette
 from texlab_core.engine.run import versions
@@ -33,15 +33,16 @@ class HelpDesk:
 
     def show_about(self) -> None:
         """Say what this is."""
-        box = QMessageBox(self._window)
-        box.setObjectName("about")
-        box.setWindowTitle("About TexLab")
         found = versions()
         listed = ", ".join(f"{name} {number}" for name, number in found.items() if name != "texlab")
-        box.setText(
-            f"<b>TexLab {found['texlab']}</b><br>Explorer of example-based texture synthesis.<br><br>"
-            f"MIT licence; the textures of the gallery have their own.<br><br><small>{listed}</small>"
+        words = "MIT licence; the textures of the gallery have their own."
+        box = message_box(
+            self._window,
+            "About TexLab",
+            f"TexLab {found['texlab']}\nExplorer of example-based texture synthesis.",
+            f"{words}\n\n{listed}",
         )
+        box.setObjectName("about")
         box.open()
 
     def show_palette(self) -> None:

@@ -11,7 +11,6 @@ from PySide6.QtGui import QAction, QActionGroup, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QApplication,
     QDockWidget,
-    QLabel,
     QMainWindow,
     QMenu,
     QSpinBox,
@@ -24,6 +23,7 @@ from PySide6.QtWidgets import (
 
 from texlab.form.panel import ParametersView
 from texlab.style.theme import apply_theme, set_text_size
+from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.message_bar import MessageBar
@@ -72,7 +72,7 @@ class MainWindow(QMainWindow):
         self._middle_layout.setContentsMargins(0, 0, 0, 0)
         self._middle_layout.setSpacing(0)
         self._middle_layout.addWidget(self.message_bar)
-        self._loading = QLabel("")
+        self._loading = Label("")
         self._loading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._middle_layout.addWidget(self._loading, 1)
         self.setCentralWidget(self._middle)
@@ -118,8 +118,8 @@ class MainWindow(QMainWindow):
             dock = QDockWidget(each.title, self)
             dock.setObjectName(f"tab-{each.name}")
             dock.setWidget(each)
-            dock.setToolTip(each.help)
-            dock.toggleViewAction().setToolTip(each.help)
+            set_tip(dock, each.help)
+            set_tip(dock.toggleViewAction(), each.help)
             self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
             if first is None:
                 first = dock
@@ -189,18 +189,18 @@ class MainWindow(QMainWindow):
         bar.addAction(act["undo"])
         bar.addAction(act["redo"])
         bar.addSeparator()
-        bar.addWidget(QLabel("Seed "))
+        bar.addWidget(Label("Seed "))
         self.seed_box = QSpinBox()
         self.seed_box.setObjectName("seed-box")
         self.seed_box.setAccessibleName("Seed")
         self.seed_box.setRange(0, MAX_SEED)
         self.seed_box.setKeyboardTracking(False)
-        self.seed_box.setToolTip("Seed of all columns: the same seed and parameters make the same bits")
+        set_tip(self.seed_box, "Seed of all columns: the same seed and parameters make the same bits")
         self.seed_box.setValue(1)
         bar.addWidget(self.seed_box)
         bar.addAction(act["dice"])
         bar.addSeparator()
-        bar.addWidget(QLabel("Size "))
+        bar.addWidget(Label("Size "))
         self.width_box, self.height_box = QSpinBox(), QSpinBox()
         for box, name in ((self.width_box, "Width"), (self.height_box, "Height")):
             box.setObjectName(f"{name.lower()}-box")
@@ -208,10 +208,10 @@ class MainWindow(QMainWindow):
             box.setRange(8, MAX_SIDE)
             box.setSingleStep(32)
             box.setKeyboardTracking(False)
-            box.setToolTip(f"{name} of the results, in pixels")
+            set_tip(box, f"{name} of the results, in pixels")
             box.setValue(256)
         bar.addWidget(self.width_box)
-        bar.addWidget(QLabel(" × "))
+        bar.addWidget(Label(" × "))
         bar.addWidget(self.height_box)
         bar.addSeparator()
         for name in ("tile", "add", "run-all", "stop-all"):
@@ -222,7 +222,7 @@ class MainWindow(QMainWindow):
         layouts = QToolButton()
         layouts.setObjectName("layout-button")
         layouts.setText("Layout")
-        layouts.setToolTip("Arrange the panels for exploring, teaching or tuning")
+        set_tip(layouts, "Arrange the panels for exploring, teaching or tuning")
         layouts.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(layouts)
         for name in ("explore", "teach", "tune"):
@@ -234,16 +234,16 @@ class MainWindow(QMainWindow):
 
     def _make_status(self) -> None:
         bar = self.statusBar()
-        self.pixel_label = QLabel("")
+        self.pixel_label = Label("")
         self.pixel_label.setObjectName("status-pixel")
         self.pixel_label.setContentsMargins(6, 0, 0, 0)
-        self.jobs_label = QLabel("")
+        self.jobs_label = Label("")
         self.jobs_label.setObjectName("status-jobs")
         self.jobs_label.setProperty("role", "muted")
-        self.memory_label = QLabel("")
+        self.memory_label = Label("")
         self.memory_label.setObjectName("status-memory")
         self.memory_label.setProperty("role", "muted")
-        self.memory_label.setToolTip("Memory used by the program")
+        set_tip(self.memory_label, "Memory used by the program")
         bar.addWidget(self.pixel_label, 1)
         bar.addPermanentWidget(self.jobs_label)
         bar.addPermanentWidget(self.memory_label)

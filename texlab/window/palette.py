@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QDialog, QLineEdit, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
+from texlab.widgets.plain import set_tip
 from texlab.window.commands import plain
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ class CommandPalette(QDialog):
             if all(word in f"{name} {action.statusTip()}".lower() for word in words):
                 keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
                 item = QListWidgetItem(f"{name}    {keys}" if keys else name)
-                item.setToolTip(action.statusTip())
+                set_tip(item, action.statusTip())
                 item.setData(Qt.ItemDataRole.UserRole, action)
                 self.list.addItem(item)
         if self.list.count():

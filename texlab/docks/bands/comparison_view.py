@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
 
 from texlab.style.numbers import number
+from texlab.widgets.plain import set_tip
 from texlab.widgets.plots import Plot
 from texlab.widgets.tables import make_quiet
 
@@ -81,10 +82,10 @@ class NumbersTable(QTableWidget):
         super().__init__(len(ROWS), 0, parent)
         self.setObjectName(name)
         self.setAccessibleName("Numbers of the distributions")
-        self.setToolTip("Moments of exemplar and result, and the distance between them")
+        set_tip(self, "Moments of exemplar and result, and the distance between them")
         for row, meaning in enumerate(MEANINGS):
             heading = QTableWidgetItem(ROWS[row])
-            heading.setToolTip(meaning)
+            set_tip(heading, meaning)
             self.setVerticalHeaderItem(row, heading)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ContiguousSelection)
         make_quiet(self)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import Qt
 
 from texlab.docks.recent import Recent, Same
+from texlab.widgets.plain import set_tip, tip_text
 from texlab_core.errors import Cancelled
 from texlab_core.stats.bands import WITH_ORIENTATIONS, WITH_SCALES, channel_names, projection, split
 
@@ -96,7 +97,7 @@ class PyramidControls:
         items = [(KINDS[kind][0], kind) for kind in kinds]
         self.kind = dock.add_choice("kind", "Pyramid", "", items, self._changed)
         for place, kind in enumerate(kinds):
-            self.kind.setItemData(place, KINDS[kind][1], Qt.ItemDataRole.ToolTipRole)
+            self.kind.setItemData(place, tip_text(KINDS[kind][1]), Qt.ItemDataRole.ToolTipRole)
         self._describe()
         tip = "Number of scales; follows the chosen column until it is changed here"
         self.scales = dock.add_number("scales", "scales", tip, (0, 8), dock.ask)
@@ -142,7 +143,7 @@ class PyramidControls:
             box.blockSignals(blocked)
 
     def _describe(self) -> None:
-        self.kind.setToolTip(f"How the image is split. {KINDS[self.kind.currentData()][1]}")
+        set_tip(self.kind, f"How the image is split. {KINDS[self.kind.currentData()][1]}")
 
     def _changed(self) -> None:
         self._describe()

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.pictures import BandLarge, band_table
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar
 from texlab.widgets.view_link import ViewLink
 
@@ -34,7 +35,7 @@ class BandDetail(QWidget):
         self.setObjectName("pyramid-detail")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._shown: BandLarge | None = None
-        self.title = QLabel("")
+        self.title = Label("")
         self.title.setObjectName("pyramid-detail-title")
         self.title.setProperty("role", "heading")
         self.close_button = QToolButton()
@@ -42,7 +43,7 @@ class BandDetail(QWidget):
         self.close_button.setText("Close")
         self.close_button.setAutoRaise(True)
         self.close_button.setAccessibleName("Close the large band")
-        self.close_button.setToolTip("Back to the mosaics alone (Esc)")
+        set_tip(self.close_button, "Back to the mosaics alone (Esc)")
         self.close_button.clicked.connect(self.closed)
         self._link = ViewLink()
         self.panes = (
@@ -53,7 +54,7 @@ class BandDetail(QWidget):
             pane.hovered.connect(lambda row, column, index=index: self._hover(index, row, column))
         self.bar = ColourBar("pyramid-detail-bar")
         self.plot = HistogramPlot("pyramid-detail-histogram", "Distribution of the band")
-        self.plot.setToolTip("Exemplar: solid and filled. Result: dashed.")
+        set_tip(self.plot, "Exemplar: solid and filled. Result: dashed.")
         self.plot.hovered.connect(self._hover_plot)
         self.plot.left.connect(lambda: self.told.emit(""))
         self.table = NumbersTable("pyramid-detail-numbers")

@@ -14,6 +14,7 @@ from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, Pyram
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items, shown_image
 from texlab.docks.recent import Same
+from texlab.widgets.plain import set_tip
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ class HistogramsDock(FramedDock):
         )
         self.readout = self.add_readout()
         self.plots = [HistogramPlot(f"histograms-plot-{k}", f"Histogram {k + 1}") for k in range(3)]
-        self.plots[0].setToolTip("Exemplar: solid and filled. Result: dashed.")
+        set_tip(self.plots[0], "Exemplar: solid and filled. Result: dashed.")
         self.table = NumbersTable("histograms-numbers")
         plots = QWidget()
         side_by_side = QHBoxLayout(plots)

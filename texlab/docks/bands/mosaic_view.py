@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
-from PySide6.QtWidgets import QGraphicsRectItem, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGraphicsRectItem, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import pg
 
 if TYPE_CHECKING:
@@ -43,10 +44,10 @@ class MosaicView(QWidget):
         super().__init__(parent)
         self.setObjectName(name)
         self.setAccessibleName(f"Subbands of the {title}")
-        self.setToolTip(f"Subbands of the {title}: click one, or use the arrow keys, to see it large")
+        set_tip(self, f"Subbands of the {title}: click one, or use the arrow keys, to see it large")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.title = QLabel(title)
+        self.title = Label(title)
         self.title.setContentsMargins(2, 0, 0, 0)
         self.pane = PicturePane(f"{name}-pane", title)
         self.pane.hovered.connect(self._hover)

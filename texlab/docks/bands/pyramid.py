@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QSize, Qt
-from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QHBoxLayout, QLabel, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QHBoxLayout, QSplitter, QVBoxLayout, QWidget
 
 from texlab.docks.bands import mosaic
 from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, channel_items
@@ -18,6 +18,7 @@ from texlab.docks.frame import FramedDock, replace_items, shown_image
 from texlab.docks.recent import Recent, Same
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size
@@ -126,7 +127,7 @@ class PyramidDock(FramedDock):
             column = QVBoxLayout(part)
             column.setContentsMargins(0, 0, 0, 0)
             column.setSpacing(1)
-            column.addWidget(QLabel(title))
+            column.addWidget(Label(title))
             column.addWidget(pane, 1)
             row.addWidget(part)
 
@@ -163,7 +164,7 @@ class PyramidDock(FramedDock):
         settings = self.pyramid.settings
         editable = settings.kind in COLLAPSIBLE
         self.edit.setEnabled(editable)
-        self.edit.setToolTip(EDIT_TIP if editable else VIEW_ONLY_TIP)
+        set_tip(self.edit, EDIT_TIP if editable else VIEW_ONLY_TIP)
         editing = editable and self.edit.isChecked()
         keys = band_keys(settings.kind, settings.levels, settings.orientations)
         if self._selected not in keys:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QLabel, QStackedLayout
+from PySide6.QtWidgets import QStackedLayout
 
 from texlab.docks.base import Question
 from texlab.docks.explain import explainer_for
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.state.intentions import Pin, ShowMarks
+from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +62,7 @@ class ExplainDock(FramedDock):
         self.release = self.add_button(
             "release", "Let go", "Follow the pointer again instead of the kept pixel", self._let_go
         )
-        self.state = QLabel()
+        self.state = Label()
         self.add_control(self.state, "state", "Which pixel", "The column and the pixel that are explained")
         self._pages = QStackedLayout(self.body)
         self._show_probe(None, None)

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QLabel, QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.explain.base import Explainer, ExplanationView, never
 from texlab.docks.explain.patch_grid import Patch, PatchGrid
 from texlab.style.numbers import number
 from texlab.style.pictures import Mark, to_picture
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.methods.efros_leung.evidence import UNITS
 from texlab_core.methods.efros_leung.explain import Explanation, Grown, explain
@@ -159,14 +160,15 @@ class EfrosLeungView(ExplanationView):
         self.setObjectName("explain-efros-leung")
         self._explained: ExplainedPixel | None = None
         self.grid = PatchGrid("explain-patches", "The window and its best matches")
-        self.grid.setToolTip(
+        set_tip(
+            self.grid,
             "First the window, then the places of the exemplar that match it best, with their distances. "
             "Thick frame: copied. Thin: could have been copied. Dotted: too far away. "
-            "What is dimmed was not compared."
+            "What is dimmed was not compared.",
         )
         self.grid.chosen.connect(lambda index: self._look_at(index))
         self.grid.hovered.connect(lambda index: self._look_at(index if index >= 0 else self.grid.selected))
-        self.words = QLabel()
+        self.words = Label()
         self.words.setObjectName("explain-growth-words")
         self.words.setWordWrap(True)
         self.words.setAccessibleName("Why the pixel is there")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.explain.band_bars import BandBars, Bar
 from texlab.docks.explain.base import Explainer, ExplanationView, never
@@ -15,6 +15,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.style.colouring import diverging
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import pg
 from texlab_core.errors import Cancelled
 from texlab_core.methods.heeger_bergen.contributions import contributions
@@ -160,13 +161,14 @@ class HeegerBergenView(ExplanationView):
         self.setObjectName("explain-heeger-bergen")
         self._explained: ExplainedPixel | None = None
         self.bars = BandBars("explain-bars", "What every subband adds to the pixel")
-        self.bars.setToolTip(
+        set_tip(
+            self.bars,
             "What every subband adds to the pixel, or takes from it. Light areas: twice the standard deviation of "
-            "what it adds anywhere. Click a bar to see its picture."
+            "what it adds anywhere. Click a bar to see its picture.",
         )
         self.bars.chosen.connect(lambda _: self._show_band())
         self.bars.hovered.connect(self._point)
-        self.title = QLabel()
+        self.title = Label()
         self.title.setObjectName("explain-band-title")
         self.title.setProperty("role", "muted")
         self.pane = PicturePane("explain-band", "What the chosen subband adds to every pixel")
@@ -174,7 +176,7 @@ class HeegerBergenView(ExplanationView):
             size=13, symbol="o", brush=None, pxMode=True, pen=pg.mkPen("#000000", width=2)
         )
         self.pane.view.addItem(self.spot, ignoreBounds=True)
-        self.words = QLabel()
+        self.words = Label()
         self.words.setObjectName("explain-band-words")
         self.words.setWordWrap(True)
         self.words.setAccessibleName("Why the pixel is there")

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.image_pane import MARK_COLOURS
+from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,9 +65,10 @@ class LevelsView(QWidget):
         super().__init__(parent)
         self.setObjectName(name)
         self.setAccessibleName("Candidates in the levels of the exemplar's pyramid")
-        self.setToolTip(
+        set_tip(
+            self,
             "The exemplar's pyramid, coarsest level first: yellow are the candidates, pink is the one that was "
-            "taken. Arrows left and right choose a level, up and down a candidate."
+            "taken. Arrows left and right choose a level, up and down a candidate.",
         )
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QHelpEvent, QPainter, QPen
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.docks.thresholds.painting import CHANNEL_COLOURS, draw_glyph
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plain import set_tip, show_tip
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,10 +70,11 @@ class StructureView(QWidget):
         super().__init__(parent)
         self.setObjectName(name)
         self.setAccessibleName("Parent structure of the pixel and of a candidate")
-        self.setToolTip(
+        set_tip(
+            self,
             "The parent structure: one bar for each feature of each coarser level. Wide bars: the pixel. "
             "Lines: the candidate. Shaded: what the thresholds allow. Thin lines: all candidates. The heights are "
-            "square roots of the normalized features."
+            "square roots of the normalized features.",
         )
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
@@ -126,7 +128,7 @@ class StructureView(QWidget):
             rows, columns = self._shown.pixel.shape
             for row, column in np.ndindex(rows, columns):
                 if self.cell_rect(row, column).contains(QPointF(event.pos())):
-                    QToolTip.showText(event.globalPos(), self._shown.describe(row, column), self)
+                    show_tip(event.globalPos(), self._shown.describe(row, column), self)
                     return True
         return super().event(event)
 

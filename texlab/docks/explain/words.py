@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QPainter
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEvent
@@ -39,7 +40,7 @@ class Words(QWidget):
         if parts != self._parts:
             self._parts = parts
             self.setAccessibleDescription(self.text())
-            self.setToolTip(self.text())
+            set_tip(self, self.text())
             self.update()
 
     def set_theme(self, theme: Theme) -> None:

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QScrollArea,
     QVBoxLayout,
     QWidget,
@@ -40,6 +39,7 @@ from texlab.docks.spectral.code_views import CodeGrid, HistogramBars
 from texlab.state.intentions import AskOnce, EditInputs, Open, Tell
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number as digits
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.inputs import DataInput
 from texlab_core.transforms.gabor_bank import CENTRE_FREQUENCIES, CENTRE_ORIENTATIONS, WIDTHS
 
@@ -162,7 +162,7 @@ class CodeDock(FramedDock):
         self.open_button = self.add_button("open", "Open ...", "Open a code (*.msg.json)", self._ask_open)
         tip = "Save these numbers as a file from which any amount of the texture can be made"
         self.save_button = self.add_button("save", "Save ...", tip, self._ask_save)
-        self.state = QLabel("")
+        self.state = Label("")
         self.add_control(self.state, "state", "What the column is made from", "What the column is made from")
         self.readout = self.add_readout()
         self.grids: dict[Group, CodeGrid] = {}
@@ -189,13 +189,13 @@ class CodeDock(FramedDock):
         layout.addWidget(area)
 
     def _headed(self, group: Group, view: QWidget) -> QWidget:
-        view.setToolTip(f"{TIPS[group]}\n{HINT}")
+        set_tip(view, f"{TIPS[group]}\n{HINT}")
         part = QWidget()
         column = QVBoxLayout(part)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(1)
-        heading = QLabel(HEADINGS[group])
-        heading.setToolTip(TIPS[group])
+        heading = Label(HEADINGS[group])
+        set_tip(heading, TIPS[group])
         column.addWidget(heading)
         column.addWidget(view, 1)
         return part

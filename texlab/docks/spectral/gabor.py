@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QRectF, QSignalBlocker
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
@@ -17,6 +17,7 @@ from texlab.state.intentions import Open
 from texlab.style.colouring import gray
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Drawn, PlanePane, Ring
 from texlab.widgets.plots import ColourBar
 from texlab.widgets.view_link import ViewLink
@@ -77,7 +78,7 @@ class GaborDock(FramedDock):
         self.zebra = self.add_button("zebra", "Zebra example", tip, self._open_zebra)
         self.readout = self.add_readout()
         self.plane = PlanePane("gabor-plane", "Filter bank in the frequency plane")
-        self.plane.setToolTip("Gain of the filters; circles: half height. Click one to see its channel.")
+        set_tip(self.plane, "Gain of the filters; circles: half height. Click one to see its channel.")
         self.plane.show_picture(
             gray(filter_bank((BANK_SIDE, BANK_SIDE))), QRectF(*frequency_area((BANK_SIDE, BANK_SIDE)))
         )
@@ -87,16 +88,16 @@ class GaborDock(FramedDock):
         row = QHBoxLayout(self.body)
         row.setContentsMargins(6, 0, 6, 6)
         row.setSpacing(4)
-        self._plane_part = _headed(QLabel("filter bank"), self.plane)
+        self._plane_part = _headed(Label("filter bank"), self.plane)
         row.addWidget(self._plane_part)
         self._link = ViewLink()
         self.panes: list[PicturePane] = []
-        self.titles: list[QLabel] = []
+        self.titles: list[Label] = []
         self._parts: list[QWidget] = []
         for index in range(PANES):
             pane = PicturePane(f"gabor-pane-{index}", f"Picture {index + 1}", self._link)
             pane.hovered.connect(lambda row, column, index=index: self._hover(index, row, column))
-            title = QLabel("")
+            title = Label("")
             part = _headed(title, pane)
             row.addWidget(part, 1)
             self.panes.append(pane)
@@ -198,7 +199,7 @@ class GaborDock(FramedDock):
             part.setVisible(each is not None)
             pane.set_picture(None if each is None else each.picture)
             title.setText("" if each is None else each.title)
-            title.setToolTip(title.text())
+            set_tip(title, title.text())
         # All at one scale, the smallest one whole: larger ones can be panned.
         sizes = [each.picture.shape for each in answer.shown]
         self._link.set_extent(min(size[0] for size in sizes), min(size[1] for size in sizes))
@@ -259,7 +260,7 @@ def strongest_filter(u: float, v: float) -> tuple[int, float]:
     return found.channel, float(2.0 ** -((math.hypot(u - found.u, v - found.v) / found.radius) ** 2))
 
 
-def _headed(title: QLabel, pane: QWidget) -> QWidget:
+def _headed(title: Label, pane: QWidget) -> QWidget:
     title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
     part = QWidget()
     column = QVBoxLayout(part)

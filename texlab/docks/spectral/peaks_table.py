@@ -9,6 +9,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QAbstractItemView, QSizePolicy, QTableWidget, QTableWidgetItem
 
+from texlab.widgets.plain import set_tip
 from texlab.widgets.tables import make_quiet
 from texlab_core.transforms.gabor_bank import channel_name
 
@@ -94,10 +95,10 @@ class PeaksTable(QTableWidget):
         super().__init__(0, len(COLUMNS), parent)
         self.setObjectName(name)
         self.setAccessibleName("Peaks of the spectra")
-        self.setToolTip("Repetitions of exemplar and result; choose one to see it in the pictures")
+        set_tip(self, "Repetitions of exemplar and result; choose one to see it in the pictures")
         for column, (title, meaning) in enumerate(COLUMNS):
             heading = QTableWidgetItem(title)
-            heading.setToolTip(meaning)
+            set_tip(heading, meaning)
             self.setHorizontalHeaderItem(column, heading)
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)

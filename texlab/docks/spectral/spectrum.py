@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QEvent, QRectF
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
@@ -15,6 +15,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.peaks_table import PeaksTable, peak_rows
 from texlab.docks.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
 from texlab.style.numbers import number
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
 from texlab.widgets.plots import SERIES, ColourBar, Plot
 from texlab_core.stats.spectrum import QUANTIZATION
@@ -73,7 +74,7 @@ class SpectrumDock(FramedDock):
         tip = "What stands beside the pictures while there is no room for both"
         self.beside = self.add_choice("beside", "Beside the pictures", tip, BESIDE, self._make_room)
         self.fit_button = self.add_button("fit", "Fit", "Show the whole plane again", lambda: self._link.fit())
-        self.numbers = QLabel("")
+        self.numbers = Label("")
         tip = (
             "Log-spectral distance: root mean square difference of the spectra in dB. "
             "Total variation: which share of the power would have to move to make them alike."
@@ -97,14 +98,14 @@ class SpectrumDock(FramedDock):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(4)
         self.panes: list[PlanePane] = []
-        self.titles: list[QLabel] = []
+        self.titles: list[Label] = []
         self._parts: list[QWidget] = []
         for index, (name, label) in enumerate((("exemplar", "Exemplar"), ("result", "Result"))):
             pane = PlanePane(f"spectrum-{name}", f"{label}'s spectrum", self._link)
-            pane.setToolTip("Drag to move, turn the wheel to enlarge, double-click for the whole plane")
+            set_tip(pane, "Drag to move, turn the wheel to enlarge, double-click for the whole plane")
             pane.hovered.connect(lambda x, y, index=index: self._hover(index, x, y))
             pane.left.connect(lambda: self._tell(""))
-            title = QLabel(label)
+            title = Label(label)
             title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
             part = QWidget()
             column = QVBoxLayout(part)
@@ -131,7 +132,7 @@ class SpectrumDock(FramedDock):
         self._plot_box.setContentsMargins(0, 0, 0, 0)
         self._plot_box.setSpacing(2)
         for plot in (self.radial, self.angular):
-            plot.setToolTip("Exemplar: solid. Result: dashed. Dotted lines: the exemplar's peaks.")
+            set_tip(plot, "Exemplar: solid. Result: dashed. Dotted lines: the exemplar's peaks.")
             plot.set_log(True)
             plot.hovered.connect(lambda x, _, plot=plot: self._hover_plot(plot, x))
             plot.left.connect(lambda: self._tell(""))
@@ -181,7 +182,7 @@ class SpectrumDock(FramedDock):
         digits = 2 if answer.view == "autocorrelation" else 0
         ticks = [(place, f"{value:.{digits}f} {unit}".strip()) for place, value in scale.ticks()]
         self.bar.show_scale(table_of(answer.view), ticks)
-        self.bar.setToolTip(MEANINGS[answer.view])
+        set_tip(self.bar, MEANINGS[answer.view])
         self.table.show_rows(peak_rows(answer))
         self._draw_profiles(answer)
         self._draw_marks()

@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
-    QLabel,
     QLineEdit,
     QSizePolicy,
     QSpinBox,
@@ -22,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from texlab.form.scales import box_step, decimals
 from texlab.widgets.flow_layout import FlowLayout
+from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
 from texlab_core.sheets.sweep import MAX_CELLS, Vary, check_knob, spread
@@ -81,7 +81,7 @@ class AxisEditor(QWidget):
         self.spacing = QComboBox()
         for place, (value, text, tip) in enumerate(SPACINGS):
             self.spacing.addItem(text, value)
-            self.spacing.setItemData(place, tip, Qt.ItemDataRole.ToolTipRole)
+            self.spacing.setItemData(place, tip_text(tip), Qt.ItemDataRole.ToolTipRole)
         self.first, self.last = QDoubleSpinBox(), QDoubleSpinBox()
         self.count = QSpinBox()
         self.count.setRange(1, MAX_CELLS)
@@ -104,14 +104,14 @@ class AxisEditor(QWidget):
         self.setFocusProxy(self.knob)
 
     def _arrange(self) -> None:
-        label = QLabel(self._title)
+        label = Label(self._title)
         label.setBuddy(self.knob)
         label.setMinimumWidth(46)
         inner = QGridLayout(self._range)
         inner.setContentsMargins(0, 0, 0, 0)
         inner.setSpacing(4)
         inner.addWidget(self.first, 0, 0)
-        inner.addWidget(QLabel("to"), 0, 1)
+        inner.addWidget(Label("to"), 0, 1)
         inner.addWidget(self.last, 0, 2)
         inner.addWidget(self.count, 0, 3)
         for column, stretch in ((0, 3), (2, 3), (3, 2)):
@@ -147,7 +147,7 @@ class AxisEditor(QWidget):
         ):
             control.setObjectName(f"{self.objectName()}-{name}")
             control.setAccessibleName(f"{self._title}: {label}")
-            control.setToolTip(tip)
+            set_tip(control, tip)
 
     # What is chosen.
 
@@ -163,7 +163,7 @@ class AxisEditor(QWidget):
             for field in self._fields.values():
                 self.knob.addItem(field.label, field.name)
                 tip = field.knob.help
-                self.knob.setItemData(self.knob.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
+                self.knob.setItemData(self.knob.count() - 1, tip_text(tip), Qt.ItemDataRole.ToolTipRole)
         if choice is not None:
             self._restore(choice)
             return
@@ -281,7 +281,7 @@ class AxisEditor(QWidget):
                 box.setDecimals(decimals(field) if field.kind == "float" else 0)
                 box.setRange(low, high)
                 box.setSingleStep((2 if field.knob.odd else 1) if field.kind == "int" else box_step(field))
-                box.setToolTip(f"{field.label}: {field.allowed}")
+                set_tip(box, f"{field.label}: {field.allowed}")
 
     def _set_numbers(self, spacing: Spacing, first: float, last: float, count: int) -> None:
         self.spacing.setCurrentIndex(self.spacing.findData(spacing))
@@ -301,7 +301,7 @@ class AxisEditor(QWidget):
             box = QCheckBox(text)
             box.setObjectName(f"{self.objectName()}-choice-{text.replace(' ', '-')}")
             box.setAccessibleName(f"{self._title}: {field.label} {text}")
-            box.setToolTip(field.knob.choices.get(str(value), f"Whether {field.label} {text} is in the sweep"))
+            set_tip(box, field.knob.choices.get(str(value), f"Whether {field.label} {text} is in the sweep"))
             box.setProperty("value", value)
             box.setChecked(True)
             box.toggled.connect(lambda _: self.changed.emit())

@@ -10,7 +10,6 @@ from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
-    QLabel,
     QProgressBar,
     QSizePolicy,
     QSlider,
@@ -24,6 +23,7 @@ from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactShee
 from texlab.state.intentions import AskOnce, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.numbers import duration, remaining
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
@@ -63,7 +63,7 @@ class SweepsDock(FramedDock):
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
         self.sheet.taken.connect(self._take)
         self.sheet.zoom_wanted.connect(self._zoom)
-        self.heading = QLabel("")
+        self.heading = Label("")
         self.heading.setObjectName("sweeps-heading")
         self.heading.setProperty("role", "muted")
         # A long line must not widen the window.
@@ -118,7 +118,7 @@ class SweepsDock(FramedDock):
         self.add_control(
             self.zoom, "zoom", "Size of the pictures", "How large the cells are shown (Ctrl+wheel, +, -)"
         )
-        self.status = QLabel("")
+        self.status = Label("")
         self.add_control(self.status, "status", "State of the sweep", "How far the sweep is")
 
     def paint_theme(self, theme: Theme) -> None:
@@ -171,7 +171,7 @@ class SweepsDock(FramedDock):
                 self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size)))
             self.sheet.show_grid([setting(sweep, index) for index in range(count)], columns, size)
             self.heading.setText(" · ".join(sweep_title(sweep)))
-            self.heading.setToolTip(self.heading.text())
+            set_tip(self.heading, self.heading.text())
         self.cells = {each.cell.index: each for each in shown.cells}
         self.sheet.show_cells(self.cells)
         self.progress.setValue(round(1000 * shown.fraction))

@@ -6,10 +6,11 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QGridLayout, QLabel, QScrollArea, QSizePolicy, QWidget
+from PySide6.QtWidgets import QComboBox, QGridLayout, QScrollArea, QSizePolicy, QWidget
 
 from texlab.docks.sweeps.axis import AxisChoice, AxisEditor
 from texlab.state.sweeps import SweepPlan
+from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
 
@@ -46,7 +47,7 @@ class SweepPanel(QScrollArea):
         self.side_box.setCurrentIndex(SIDES.index(USUAL_SIDE))
         self.across = AxisEditor(f"{name}-across", "Across", optional=False)
         self.down = AxisEditor(f"{name}-down", "Down", optional=True)
-        self.error = QLabel("")
+        self.error = Label("")
         self.error.setObjectName(f"{name}-error")
         self.error.setProperty("role", "error")
         self.error.setWordWrap(True)
@@ -74,12 +75,12 @@ class SweepPanel(QScrollArea):
             axis.changed.connect(self._axis_changed)
 
     def _add(self, layout: QGridLayout, row: int, text: str, box: QComboBox, name: str, tip: str) -> None:
-        label = QLabel(text)
+        label = Label(text)
         label.setBuddy(box)
         label.setMinimumWidth(_LABEL)
         box.setObjectName(name)
         box.setAccessibleName(text)
-        box.setToolTip(tip)
+        set_tip(box, tip)
         box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         layout.addWidget(label, row, 0)
         layout.addWidget(box, row, 1)
@@ -109,7 +110,7 @@ class SweepPanel(QScrollArea):
         self.recipe_box.addItem("own choice" if recipes else "none for this method")
         for place, recipe in enumerate(recipes):
             self.recipe_box.addItem(recipe.name.removeprefix(f"{self._method}-").replace("-", " "))
-            self.recipe_box.setItemData(place + 1, f"<qt>{recipe.note}</qt>", Qt.ItemDataRole.ToolTipRole)
+            self.recipe_box.setItemData(place + 1, tip_text(recipe.note), Qt.ItemDataRole.ToolTipRole)
         self.recipe_box.setEnabled(bool(recipes))
         self._offer_base()
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QHelpEvent, QImage, QPainter, QPixmap
-from PySide6.QtWidgets import QFrame, QScrollArea, QToolTip, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
 
 from texlab.style.theme import DARK
+from texlab.widgets.plain import show_tip
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -382,7 +383,7 @@ class _Canvas(QWidget):
         """Show the whole text of a cell as its tooltip."""
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             index = self.index_at(event.pos())
-            QToolTip.showText(event.globalPos(), self.describe(index) if index is not None else "", self)
+            show_tip(event.globalPos(), self.describe(index) if index is not None else "", self)
             return True
         return super().event(event)
 

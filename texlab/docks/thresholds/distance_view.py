@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from texlab.docks.thresholds.table import SoftLog, cell_text, rounded
 from texlab.form.knobs import SETTLE_MS
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plain import set_tip
 from texlab_core.methods.de_bonet.distances import feature_distances, passing_share
 
 if TYPE_CHECKING:
@@ -72,9 +73,10 @@ class DistanceView(QWidget):
         super().__init__(parent)
         self.setObjectName(name)
         self.setAccessibleName("Distances of the chosen feature, with its threshold")
-        self.setToolTip(
+        set_tip(
+            self,
             "How different this feature is between places of the exemplar: the filled part is what the threshold "
-            "lets through. Drag the line, or use the arrow keys, to change the threshold of the chosen cell."
+            "lets through. Drag the line, or use the arrow keys, to change the threshold of the chosen cell.",
         )
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)

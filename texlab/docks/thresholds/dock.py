@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
@@ -14,6 +14,7 @@ from texlab.docks.thresholds.distance_view import Distances, DistanceView
 from texlab.docks.thresholds.editor import TableEditor
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view, table_field
 from texlab.state.intentions import EditField
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
 if TYPE_CHECKING:
@@ -50,17 +51,18 @@ class ThresholdsDock(FramedDock):
         self.editor = TableEditor("thresholds-table")
         self.distances = DistanceView("thresholds-distances")
         self._build_controls()
-        self.cell_name = QLabel()
+        self.cell_name = Label()
         self.cell_name.setObjectName("thresholds-cell")
         self.cell_name.setWordWrap(True)
-        self.passing = QLabel()
+        self.passing = Label()
         self.passing.setObjectName("thresholds-passing")
-        self.measures = QLabel()
+        self.measures = Label()
         self.measures.setObjectName("thresholds-measures")
         self.measures.setWordWrap(True)
-        self.measures.setToolTip(
+        set_tip(
+            self.measures,
             "Of the column's newest result: how many candidates a typical pixel was chosen from, and the share of "
-            "neighbouring pixels that were copied together"
+            "neighbouring pixels that were copied together",
         )
         beside = QWidget()
         beside.setFixedWidth(SIDE)
@@ -174,7 +176,7 @@ class ThresholdsDock(FramedDock):
             return
         row, column = self.editor.current
         self.cell_name.setText(f"{view.heads[column].title}, k {row + 1}")
-        self.cell_name.setToolTip(view.describe(row, column))
+        set_tip(self.cell_name, view.describe(row, column))
         value = float(view.values[row, column])
         self.distances.show_threshold(value)
         if not self.paint.isChecked():
@@ -216,7 +218,7 @@ def measures_text(column: ColumnScene) -> str:
     parts = []
     if "median-candidates" in measures:
         count = measures["median-candidates"]
-        parts.append(f"<b>{count:.0f}</b> candidate{'' if count == 1 else 's'} (median)")
+        parts.append(f"{count:.0f} candidate{'' if count == 1 else 's'} (median)")
     if "copied-share" in measures:
-        parts.append(f"<b>{measures['copied-share']:.0%}</b> copied")
+        parts.append(f"{measures['copied-share']:.0%} copied")
     return " · ".join(parts)

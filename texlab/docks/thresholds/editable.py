@@ -12,6 +12,7 @@ from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import cell_text, changed, mirrored, moved, replaced, reset, rounded
 from texlab.form.knobs import SETTLE_MS
+from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPainter
@@ -45,7 +46,7 @@ class EditableTable(TableMap):
         self._entry = QLineEdit(self)
         self._entry.setObjectName(f"{name}-entry")
         self._entry.setAccessibleName("Value of the selected cells")
-        self._entry.setToolTip("A threshold from 0; Return takes it, Escape does not")
+        set_tip(self._entry, "A threshold from 0; Return takes it, Escape does not")
         self._entry.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._entry.setValidator(QDoubleValidator(0.0, 1e6, 6, self._entry))
         self._entry.hide()

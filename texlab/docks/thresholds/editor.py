@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QMouseEvent
-from PySide6.QtWidgets import QToolTip, QWidget
 
 from texlab.docks.thresholds.editable import EditableTable
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import changed, moved, rounded
+from texlab.widgets.plain import set_tip, show_tip
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from PySide6.QtCore import QObject
+    from PySide6.QtWidgets import QWidget
 
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
 
@@ -66,7 +67,7 @@ class TableEditor(EditableTable):
 
     def __init__(self, name: str, parent: QWidget | None = None) -> None:
         super().__init__(name, parent)
-        self.setToolTip(HINT)
+        set_tip(self, HINT)
         self.setMouseTracking(True)
         self._drag: _Drag | None = None
         self._painting = False
@@ -215,7 +216,7 @@ class TableEditor(EditableTable):
             if place is not None and min(place) >= 0:
                 locked = set(self._view.cells(*place)) <= self._locked
                 words = self._view.describe(*place) + (", locked" if locked else "")
-                QToolTip.showText(event.globalPos(), words, self)
+                show_tip(event.globalPos(), words, self)
                 return True
         return super().event(event)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view
 from texlab.form.knobs import KnobWidget, register_editor
+from texlab.widgets.plain import Label, set_tip
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 if TYPE_CHECKING:
@@ -49,16 +50,17 @@ class ThresholdKnob(KnobWidget):
         self._column: ColumnScene | None = None
         self._known = KnownAxes()
         self.map = _Map(field, self)
-        self.map.setToolTip(
+        set_tip(
+            self.map,
             "Rows: levels, coarsest first. Columns: features. A corner marks the cells that were set by hand. "
-            "Double click or Return opens the large table."
+            "Double click or Return opens the large table.",
         )
         self.button = QPushButton("Edit table")
         self.button.setObjectName(f"edit-{field.name}")
         self.button.setAccessibleName("Edit the threshold table")
-        self.button.setToolTip("Open the table of all thresholds, levels by features, below the images")
+        set_tip(self.button, "Open the table of all thresholds, levels by features, below the images")
         self.button.clicked.connect(lambda _: self.open_dock())
-        self.note = QLabel()
+        self.note = Label()
         self.note.setObjectName(f"note-{field.name}")
         self.note.setProperty("role", "muted")
         self.note.setWordWrap(True)

@@ -1,0 +1,87 @@
+"""The only makers of labels and tooltips: text is shown as it is written, whoever wrote it.
+
+Qt takes a text that looks like markup for rich text, which may load any file of this machine. Names, notes and
+errors from files reach labels, tooltips and boxes; so nothing else in the window makes these (a test says so).
+"""
+
+from __future__ import annotations
+
+import html
+import textwrap
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QMessageBox, QToolTip, QTreeWidgetItem, QWidget
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QPoint
+    from PySide6.QtGui import QAction
+    from PySide6.QtWidgets import QListWidgetItem, QTableWidgetItem
+
+# Characters in a line of a tooltip.
+TIP_WIDTH = 60
+# Of what came from outside, no more than anybody would read.
+LONGEST_TIP = 4000
+
+
+class Label(QLabel):
+    """A label whose text is never markup."""
+
+    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setText(text)
+
+
+class MarkupLabel(QLabel):
+    """A label that the program itself gives markup; foreign parts of it go through :func:`escaped`."""
+
+    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setTextFormat(Qt.TextFormat.RichText)
+        self.setText(text)
+
+
+def escaped(text: str) -> str:
+    """Return a text as part of markup."""
+    return html.escape(text)
+
+
+def tip_text(text: str) -> str:
+    """Return what shows as this text in a tooltip, in lines of at most 60 characters."""
+    if len(text) > LONGEST_TIP:
+        text = text[:LONGEST_TIP] + " …"
+    lines = [
+        line
+        for paragraph in text.split("\n")
+        for line in textwrap.wrap(paragraph, TIP_WIDTH, break_on_hyphens=False) or [""]
+    ]
+    shown = "\n".join(lines)
+    # Qt takes nothing for markup that has no tag.
+    if "<" not in shown:
+        return shown
+    return "<qt>" + "<br>".join(html.escape(line).replace(" ", "&nbsp;") for line in lines) + "</qt>"
+
+
+def set_tip(target: QWidget | QAction | QTreeWidgetItem | QListWidgetItem | QTableWidgetItem, text: str) -> None:
+    """Give something a tooltip."""
+    if isinstance(target, QTreeWidgetItem):
+        target.setToolTip(0, tip_text(text))
+    else:
+        target.setToolTip(tip_text(text))
+
+
+def show_tip(position: QPoint, text: str, widget: QWidget) -> None:
+    """Show a tooltip now, at a place of the screen; nothing when the text is empty."""
+    QToolTip.showText(position, tip_text(text), widget)
+
+
+def message_box(parent: QWidget, title: str, text: str, details: str = "") -> QMessageBox:
+    """Return a box whose texts are never markup; it deletes itself when it is closed."""
+    box = QMessageBox(parent)
+    box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    box.setTextFormat(Qt.TextFormat.PlainText)
+    box.setWindowTitle(title)
+    box.setText(text)
+    box.setInformativeText(details)
+    return box
