@@ -7,6 +7,7 @@ import pytest
 
 from tests.benchmarks.clock import cpu
 from texlab_core.stats import histogram
+from texlab_core.work.tasks import finish
 
 pytestmark = pytest.mark.benchmark
 
@@ -32,8 +33,8 @@ def test_matching() -> None:
             for work in (
                 lambda v=values, t=target: histogram.match_ranks(v, t),
                 lambda v=values, t=half: histogram.match_ranks(v, t),
-                lambda v=values, t=coarse: histogram.match_tables(v, t),
-                lambda v=values, t=fine: histogram.match_tables(v, t),
+                lambda v=values, t=coarse: finish(histogram.match_tables_in_place(v.copy(), t)),
+                lambda v=values, t=fine: finish(histogram.match_tables_in_place(v.copy(), t)),
                 scatter,
             )
         ]

@@ -40,7 +40,7 @@ def test_filters_and_orientations() -> None:
             steerable.collapse(steerable.build(plane, 4, count))
 
         def cold(count: int = orientations) -> None:
-            filters.forget()
+            filters._CACHE.clear()
             steerable.collapse(steerable.build(plane, 4, count))
 
         print(f"{orientations:12} {cpu(warm) / unit:16.1f} {cpu(cold) / unit:16.1f}")

@@ -150,7 +150,7 @@ def test_teach_enlarges_the_text_and_the_room_for_it(qtbot: Any, explorer: Explo
     actions = explorer.window.actions_by_name
     try:
         actions["layout-teach"].trigger()
-        for widget in (line, explorer.window.seed_box, explorer.workspace.exemplar.line):
+        for widget in (line, explorer.window.toolbar.seed_box, explorer.workspace.exemplar.line):
             assert widget.font().pointSizeF() == pytest.approx(1.35 * before)
         qtbot.waitUntil(lambda: line.height() >= LINES * line.fontMetrics().lineSpacing(), timeout=5_000)
     finally:
@@ -301,15 +301,15 @@ def test_what_was_said_about_another_exemplar_goes(qtbot: Any, explorer: Explore
 
 
 def test_turns_of_a_box_without_a_pause_are_one_step(qtbot: Any, explorer: Explorer) -> None:
-    box = explorer.window.seed_box
+    box = explorer.window.toolbar.seed_box
     box.setFocus()
     for _ in range(5):
         qtbot.keyClick(box, Qt.Key.Key_Up)
     assert explorer.session.state.seed == 10
     for _ in range(2):
         explorer.window.actions_by_name["dice"].trigger()
-    explorer.window.width_box.stepUp()
-    explorer.window.height_box.stepUp()
+    explorer.window.toolbar.width_box.stepUp()
+    explorer.window.toolbar.height_box.stepUp()
     assert explorer.session.state.size == (80, 80)
     explorer.session.undo()
     assert explorer.session.state.size == (48, 48)

@@ -48,7 +48,7 @@ def test_columns_show_what_the_core_makes(explorer: Explorer, texture: Path) -> 
 def test_seed_size_undo_and_redo(qtbot: Any, explorer: Explorer, texture: Path) -> None:
     column = explorer.session.state.columns[0]
     before = result_image(explorer, column.id)
-    box = explorer.window.seed_box
+    box = explorer.window.toolbar.seed_box
     box.setFocus()
     box.selectAll()
     qtbot.keyClicks(box, "77")
@@ -56,10 +56,10 @@ def test_seed_size_undo_and_redo(qtbot: Any, explorer: Explorer, texture: Path) 
     assert explorer.session.state.seed == 77
     wait_idle(qtbot, explorer)
     assert np.array_equal(result_image(explorer, column.id), expected(str(texture), column, seed=77))
-    explorer.window.width_box.setFocus()
-    explorer.window.width_box.selectAll()
-    qtbot.keyClicks(explorer.window.width_box, "64")
-    qtbot.keyClick(explorer.window.width_box, Qt.Key.Key_Return)
+    explorer.window.toolbar.width_box.setFocus()
+    explorer.window.toolbar.width_box.selectAll()
+    qtbot.keyClicks(explorer.window.toolbar.width_box, "64")
+    qtbot.keyClick(explorer.window.toolbar.width_box, Qt.Key.Key_Return)
     wait_idle(qtbot, explorer)
     assert result_image(explorer, column.id).shape == (48, 64, 3)
     explorer.window.setFocus()

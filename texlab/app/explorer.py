@@ -59,7 +59,9 @@ class Explorer(QObject):
         self.themes = themes
         self.session = Session(self)
         self.controller = Controller(self.session, self)
-        self.opener = Opener(self.session, self.controller, settings, lambda path: self.presets.import_file(path))
+        self.opener = Opener(
+            self.session, self.controller, settings, lambda preset: self.presets.import_preset(preset)
+        )
         self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
         self.autosave = Autosave(self.session, settings, self)
         self.crash = CrashHandler(self)
@@ -174,9 +176,8 @@ class Explorer(QObject):
     def _connect_controls(self) -> None:
         """Connect what the user turns and drags."""
         window, session, controller, turn = self.window, self.session, self.controller, self.handlers.turn
-        window.seed_box.valueChanged.connect(lambda seed: turn("seed", partial(session.set_seed, seed)))
-        for box in (window.width_box, window.height_box):
-            box.valueChanged.connect(lambda _: turn("size", partial(session.set_size, window.size_shown)))
+        window.toolbar.seed_turned.connect(lambda seed: turn("seed", partial(session.set_seed, seed)))
+        window.toolbar.size_turned.connect(lambda size: turn("size", partial(session.set_size, size)))
         parameters = window.parameters
         parameters.edited.connect(controller.edit_params)
         parameters.reset_wanted.connect(controller.reset_params)
@@ -191,8 +192,6 @@ class Explorer(QObject):
         controller = self.controller
         view.chosen.connect(self.session.select)
         view.method_chosen.connect(self.handlers.choose_method)
-        view.run_wanted.connect(controller.run_column)
-        view.stop_wanted.connect(controller.stop_column)
         view.command.connect(self.handlers.column_command)
         view.hovered.connect(self.presenter.say_column_pixel)
         view.hovered.connect(controller.point_at)

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from texlab.columns.commands import COLUMN_COMMANDS
 from texlab.columns.status import status_parts
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.plain import set_tip
@@ -38,23 +39,10 @@ class ColumnView(QFrame):
 
     chosen = Signal(int)
     method_chosen = Signal(int, str)
-    run_wanted = Signal(int)
-    stop_wanted = Signal(int)
     command = Signal(int, str)
     hovered = Signal(int, int, int)
     pixel_clicked = Signal(int, int, int)
     map_chosen = Signal(int, str)
-
-    COMMANDS = (
-        ("go-on", "Go on from here"),
-        ("duplicate", "Duplicate column"),
-        ("left", "Move left"),
-        ("right", "Move right"),
-        ("export", "Save result as PNG ..."),
-        ("copy", "Copy picture"),
-        ("use", "Use result as exemplar"),
-        ("remove", "Remove column"),
-    )
 
     def __init__(
         self, column_id: int, methods: Iterable[tuple[str, str]], link: ViewLink, parent: QWidget | None = None
@@ -78,8 +66,10 @@ class ColumnView(QFrame):
         self.menu_button = self._button("⋯", "More for this column", "menu")
         self.menu = QMenu(self)
         self.actions_by_name: dict[str, QAction] = {}
-        for name, text in self.COMMANDS:
-            action = self.menu.addAction(text)
+        for name, command in COLUMN_COMMANDS.items():
+            if not command.own:
+                continue
+            action = self.menu.addAction(command.own)
             action.setObjectName(f"column-{name}-{column_id}")
             action.triggered.connect(lambda _=False, name=name: self.command.emit(self.column_id, name))
             self.actions_by_name[name] = action
@@ -120,8 +110,8 @@ class ColumnView(QFrame):
         self.method_box.activated.connect(
             lambda place: self.method_chosen.emit(self.column_id, self.method_box.itemData(place))
         )
-        self.run_button.clicked.connect(lambda: self.run_wanted.emit(self.column_id))
-        self.stop_button.clicked.connect(lambda: self.stop_wanted.emit(self.column_id))
+        self.run_button.clicked.connect(lambda: self.command.emit(self.column_id, "run"))
+        self.stop_button.clicked.connect(lambda: self.command.emit(self.column_id, "stop"))
         self.pane.clicked.connect(self._pane_clicked)
         self.pane.hovered.connect(lambda row, column: self.hovered.emit(self.column_id, row, column))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject
@@ -108,11 +109,15 @@ class PresetManager(QObject):
 
     def import_file(self, path: str) -> None:
         """Read a preset from a file, keep it, and give it to a column of its method."""
+        self._import(lambda: read_preset(Path(path)))
 
+    def import_preset(self, preset: Preset) -> None:
+        """Keep a preset that was read, and give it to a column of its method."""
+        self._import(lambda: preset)
+
+    def _import(self, read: Callable[[], Preset]) -> None:
         def work(task: Task) -> Preset:
-            from pathlib import Path
-
-            preset = read_preset(Path(path))
+            preset = read()
             self._store.save(preset, replace=False)
             return preset
 

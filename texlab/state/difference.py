@@ -1,4 +1,4 @@
-"""Pure decisions: which columns a change concerns, how large a draft may be, how a scene looks."""
+"""Which columns a change of the session concerns."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ class Difference:
     added: tuple[int, ...]
     removed: tuple[int, ...]
     run: tuple[int, ...]
-    order: bool
 
 
 def difference(before: State, after: State) -> Difference:
@@ -33,5 +32,4 @@ def difference(before: State, after: State) -> Difference:
         added=tuple(key for key in new if key not in old),
         removed=tuple(key for key in old if key not in new),
         run=run,
-        order=tuple(old) != tuple(new),
     )

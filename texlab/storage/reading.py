@@ -5,11 +5,14 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from texlab.state.changes import Opened
 from texlab.storage.kept_exemplar import Kept, kept_path, load
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
+
+if TYPE_CHECKING:
+    from texlab_core.documents.presets import Preset
 
 DOCUMENT_SUFFIX = ".json"
 
@@ -25,10 +28,10 @@ class Choice:
 
 @dataclass(frozen=True)
 class Document:
-    """What a JSON file turned out to be: a code, or else a preset."""
+    """What a JSON file turned out to be: one of these."""
 
-    path: str
     code: DataInput | None = None
+    preset: Preset | None = None
 
 
 def is_document(source: str | bytes) -> bool:
@@ -37,7 +40,7 @@ def is_document(source: str | bytes) -> bool:
 
 
 def open_document(path: str) -> Document:
-    """Read a code or recognize a preset by its ``format``; runs in a thread.
+    """Read a code or a preset, by its ``format``; runs in a thread.
 
     Raises
     ------
@@ -54,10 +57,10 @@ def open_document(path: str) -> Document:
     kind = data.get("format") if isinstance(data, dict) else None
     if kind == codefile.FORMAT:
         code = codefile.code_from_json(data, what=f"the code {file.name}").code
-        return Document(path, codefile.code_input(code, file.name))
+        return Document(code=codefile.code_input(code, file.name))
     if kind != presets.FORMAT:
         raise InputError(f"{file.name} is neither a code of MSG nor a preset.")
-    return Document(path)
+    return Document(preset=presets.preset_from_json(data, what=f"the preset {file.name}"))
 
 
 def open_source(source: str | bytes | Kept) -> Opened:

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QPainter
+from PySide6.QtGui import QPainter
 
+from texlab.widgets.pane import Pane
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
-    from PySide6.QtCore import QEvent, QPoint
-    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
+    from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.style.pictures import Mark, Picture
-    from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
 
 
@@ -69,7 +68,7 @@ def _enlarged(place: QRectF, least: float) -> QRectF:
     return place.adjusted(-grow[0], -grow[1], *grow)
 
 
-class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class ImagePane(Pane):
     """Shows an (H, W, 3) uint8 picture with nearest-neighbour enlargement.
 
     ``hovered(row, column)`` gives the image pixel under the cursor (modulo the image when tiled), (-1, -1)
@@ -80,29 +79,16 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     clicked = Signal(int, int)
     painted = Signal()
     # The base class resizes itself while it is made.
-    _link: ViewLink | None = None
     _picture: Picture | None = None
     _note: Label | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
-        super().__init__(parent, background=None)
-        self._link = link
         self._tiled = False
-        self._press: QPoint | None = None
-        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
-        self.view.setMouseMode(pg.ViewBox.PanMode)
-        self.setCentralItem(self.view)
-        self.item = pg.ImageItem(levels=None)
-        self.view.addItem(self.item)
+        super().__init__(link, parent)
         self._copies: list[Any] = []
         self._overlay: Any = None
         self._marks: MarksItem | None = None
-        self.setMouseTracking(True)
-        self.setMinimumSize(60, 60)
-        self.view.sigRangeChangedManually.connect(self._moved)
         self.view.sigResized.connect(lambda _: link.resized())
-        self.scene().sigMouseMoved.connect(self._pointer_moved)
-        link.join(self)
 
     @property
     def picture(self) -> Picture | None:
@@ -194,17 +180,9 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
             self.view.addItem(self._marks, ignoreBounds=True)
         self._marks.show_marks(marks, offset)
 
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self.setBackground(QColor(theme.canvas))
-
-    def view_rect(self) -> QRectF:
-        """Return the visible rectangle in image coordinates."""
-        return QRectF(self.view.viewRect())
-
     def show_rect(self, rectangle: QRectF) -> None:
         """Make a rectangle of image coordinates visible."""
-        self.view.setRange(rectangle, padding=0, disableAutoRange=True)
+        super().show_rect(rectangle)
         self._choose_filter()
 
     @property
@@ -219,48 +197,12 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 
     def to_widget(self, row: float, column: float) -> QPointF:
         """Return where an image position is painted, in widget coordinates."""
-        return QPointF(self.mapFromScene(self.view.mapViewToScene(QPointF(column, row))))
-
-    def detach(self) -> None:
-        """Leave the link before the pane is deleted."""
-        if self._link is not None:
-            self._link.leave(self)
+        return self.widget_place(column, row)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit again when the user has not zoomed."""
         super().resizeEvent(event)
         self._place_note()
-        if self._link is not None:
-            self._link.resized()
-
-    def leaveEvent(self, event: QEvent) -> None:
-        """Tell that the cursor has left."""
-        super().leaveEvent(event)
-        self.hovered.emit(-1, -1)
-
-    def mousePressEvent(self, event: Any) -> None:
-        """Remember where the button went down."""
-        self._press = event.position().toPoint()
-        super().mousePressEvent(event)
-
-    def mouseReleaseEvent(self, event: Any) -> None:
-        """Take a press and release on one place as a click."""
-        super().mouseReleaseEvent(event)
-        here = event.position().toPoint()
-        left = event.button() == Qt.MouseButton.LeftButton
-        if left and self._press is not None and (here - self._press).manhattanLength() <= 3:
-            self.clicked.emit(*self._pixel(self.mapToScene(here)))
-        self._press = None
-
-    def mouseDoubleClickEvent(self, event: Any) -> None:
-        """Fit all panes."""
-        super().mouseDoubleClickEvent(event)
-        if self._link is not None:
-            self._link.fit()
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Leave context menus to the column."""
-        event.ignore()
 
     def _place_copies(self) -> None:
         if self._picture is None:
@@ -271,23 +213,30 @@ class ImagePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 
     def _moved(self, *_: object) -> None:
         self._choose_filter()
-        if self._link is not None:
-            self._link.moved(self)
+        super()._moved()
 
     def _choose_filter(self) -> None:
         # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
         pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
         self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)
 
-    def _pixel(self, scene_point: QPointF) -> tuple[int, int]:
+    def _pixel(self, place: QPointF) -> tuple[int, int]:
         extent = self.extent
         if extent is None or self._picture is None:
             return -1, -1
-        point = self.view.mapSceneToView(scene_point)
-        row, column = int(np.floor(point.y())), int(np.floor(point.x()))
+        row, column = int(np.floor(place.y())), int(np.floor(place.x()))
         if not (0 <= row < extent[0] and 0 <= column < extent[1]):
             return -1, -1
         return row % self._picture.shape[0], column % self._picture.shape[1]
 
-    def _pointer_moved(self, scene_point: QPointF) -> None:
-        self.hovered.emit(*self._pixel(scene_point))
+    def point_at(self, place: QPointF) -> None:
+        """Tell which pixel is under the pointer."""
+        self.hovered.emit(*self._pixel(place))
+
+    def point_nowhere(self) -> None:
+        """Tell that the pointer has left."""
+        self.hovered.emit(-1, -1)
+
+    def click_at(self, place: QPointF) -> None:
+        """Tell which pixel was clicked."""
+        self.clicked.emit(*self._pixel(place))

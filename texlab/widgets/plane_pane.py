@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QPainter
+from PySide6.QtGui import QPainter
 
-from texlab.style.theme import configure_pyqtgraph
+from texlab.widgets.pane import Link, Pane
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from PySide6.QtCore import QEvent, QPoint
-    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
-
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
-
-configure_pyqtgraph()
 
 Tint = Literal["exemplar", "result", "centre", "chosen"]
 Shape = Literal["circle", "square", "cross", "dot"]
@@ -65,16 +59,12 @@ class Arrow:
 Drawn = Ring | Spot | Arrow
 
 
-class PlaneLink:
+class PlaneLink(Link["PlanePane"]):
     """One rectangle of coordinates that all panes of a link show."""
 
     def __init__(self) -> None:
-        self._panes: list[PlanePane] = []
+        super().__init__()
         self._fitted = True
-
-    def join(self, pane: PlanePane) -> None:
-        """Make a pane follow the others."""
-        self._panes.append(pane)
 
     def moved(self, source: PlanePane) -> None:
         """Show in all panes what the user made one show."""
@@ -84,7 +74,7 @@ class PlaneLink:
             if pane is not source:
                 pane.show_rect(rectangle)
 
-    def changed(self) -> None:
+    def resized(self) -> None:
         """Fit again unless the user has zoomed."""
         if self._fitted:
             self.fit()
@@ -100,7 +90,7 @@ class PlaneLink:
                 pane.show_rect(whole)
 
 
-class PlanePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class PlanePane(Pane):
     """Shows an (h, w, 3) uint8 picture of a plane with marks over it.
 
     ``hovered(x, y)``, ``clicked(x, y)`` and ``left()`` are in the coordinates of the plane; y points down.
@@ -109,29 +99,16 @@ class PlanePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     hovered = Signal(float, float)
     clicked = Signal(float, float)
     left = Signal()
-    # The base class resizes itself while it is made.
-    _link: PlaneLink | None = None
+    area = QRectF()
 
     def __init__(self, name: str, label: str, link: PlaneLink | None = None) -> None:
-        super().__init__(None, background=None)
-        self._link = link or PlaneLink()
+        super().__init__(link or PlaneLink())
         self.setObjectName(name)
         self.setAccessibleName(label)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setMinimumSize(60, 60)
-        self.area = QRectF()
         self.picture: Picture | None = None
-        self._press: QPoint | None = None
-        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
-        self.view.setMouseMode(pg.ViewBox.PanMode)
-        self.setCentralItem(self.view)
-        self.item = pg.ImageItem(levels=None)
-        self.view.addItem(self.item, ignoreBounds=True)
         self.marks = MarksOverPlane()
         self.view.addItem(self.marks, ignoreBounds=True)
-        self.setMouseTracking(True)
-        self.view.sigRangeChangedManually.connect(self._moved)
-        self._link.join(self)
 
     def show_picture(self, picture: Picture | None, area: QRectF) -> None:
         """Show a picture over a rectangle of coordinates, or nothing."""
@@ -145,79 +122,30 @@ class PlanePane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         if area != self.area:
             self.area = area
             if self._link is not None:
-                self._link.changed()
+                self._link.resized()
 
     def show_marks(self, marks: Sequence[Drawn]) -> None:
         """Draw these marks over the picture."""
         self.marks.show_marks(marks)
 
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self.setBackground(QColor(theme.canvas))
-
-    def view_rect(self) -> QRectF:
-        """Return the visible rectangle."""
-        return QRectF(self.view.viewRect())
-
-    def show_rect(self, rectangle: QRectF) -> None:
-        """Make a rectangle visible."""
-        self.view.setRange(rectangle, padding=0, disableAutoRange=True)
-
     def to_widget(self, x: float, y: float) -> QPointF:
         """Return where a place is painted, in the viewport."""
-        return QPointF(self.mapFromScene(self.view.mapViewToScene(QPointF(x, y))))
+        return self.widget_place(x, y)
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Fit again when the user has not zoomed."""
-        super().resizeEvent(event)
-        if self._link is not None:
-            self._link.changed()
-
-    def mouseMoveEvent(self, event: Any) -> None:
-        """Tell where the cursor is."""
-        super().mouseMoveEvent(event)
-        point = self._place(event.position().toPoint())
-        if self.area.contains(point):
-            self.hovered.emit(point.x(), point.y())
+    def point_at(self, place: QPointF) -> None:
+        """Tell where the pointer is, or that it is beside the picture."""
+        if self.area.contains(place):
+            self.hovered.emit(place.x(), place.y())
         else:
             self.left.emit()
 
-    def leaveEvent(self, event: QEvent) -> None:
-        """Tell that the cursor has left."""
-        super().leaveEvent(event)
+    def point_nowhere(self) -> None:
+        """Tell that the pointer has left."""
         self.left.emit()
 
-    def mousePressEvent(self, event: Any) -> None:
-        """Remember where the button went down."""
-        self._press = event.position().toPoint()
-        super().mousePressEvent(event)
-
-    def mouseReleaseEvent(self, event: Any) -> None:
-        """Take a press and release on one place as a click."""
-        super().mouseReleaseEvent(event)
-        here = event.position().toPoint()
-        near = self._press is not None and (here - self._press).manhattanLength() <= 3
-        if event.button() == Qt.MouseButton.LeftButton and near:
-            point = self._place(here)
-            self.clicked.emit(point.x(), point.y())
-        self._press = None
-
-    def mouseDoubleClickEvent(self, event: Any) -> None:
-        """Show everything again."""
-        super().mouseDoubleClickEvent(event)
-        if self._link is not None:
-            self._link.fit()
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Show no menu."""
-        event.ignore()
-
-    def _place(self, position: QPoint) -> QPointF:
-        return QPointF(self.view.mapSceneToView(self.mapToScene(position)))
-
-    def _moved(self, *_: object) -> None:
-        if self._link is not None:
-            self._link.moved(self)
+    def click_at(self, place: QPointF) -> None:
+        """Tell where a click was."""
+        self.clicked.emit(place.x(), place.y())
 
 
 class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types

@@ -6,6 +6,8 @@ from typing import Protocol
 
 from PySide6.QtCore import QPointF, QRectF
 
+from texlab.widgets.pane import Link
+
 # What is thinner on the screen, in pixels, is enlarged to this, or to its own size.
 LEAST = 8
 
@@ -40,7 +42,7 @@ class Linked(Protocol):
         ...
 
 
-class ViewLink:
+class ViewLink(Link[Linked]):
     """One place that every pane shows.
 
     ``setXLink`` before the first image breaks the automatic range, so the panes are told instead. As long as the
@@ -50,20 +52,11 @@ class ViewLink:
     """
 
     def __init__(self) -> None:
-        self._panes: list[Linked] = []
+        super().__init__()
         self._extent = (1, 1)
         self._thinnest = 0
         self._centre = QPointF()
         self._scale: float | None = None
-
-    def join(self, pane: Linked) -> None:
-        """Make a pane follow the others."""
-        self._panes.append(pane)
-
-    def leave(self, pane: Linked) -> None:
-        """Let a pane go."""
-        if pane in self._panes:
-            self._panes.remove(pane)
 
     def moved(self, source: Linked) -> None:
         """Show in all panes what the user made one show."""

@@ -2,55 +2,42 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QKeySequence
 
+from texlab.columns.commands import COLUMN_COMMANDS, Command
 from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
 
-@dataclass(frozen=True)
-class Command:
-    """A command: where it is found in the menus, its name, text, keys and explanation."""
-
-    menu: str
-    name: str
-    text: str
-    keys: str = ""
-    help: str = ""
-    checkable: bool = False
-    separator: bool = False
-
-
+_OF = COLUMN_COMMANDS
 COMMANDS = (
     Command("&File", "open", "&Open image ...", "Ctrl+O", "Open an image, or a saved result with its recipe"),
     Command("&File", "paste", "&Paste image", "Ctrl+V", "Use the image on the clipboard as exemplar"),
-    Command("&File", "export", "&Save result ...", "Ctrl+S", "Save the chosen column's result with its recipe"),
+    _OF["export"],
     Command("&File", "quit", "&Quit", "Ctrl+Q", "Close the window; the session comes back", separator=True),
     Command("&Edit", "undo", "&Undo", "Ctrl+Z", "Take the last change back"),
     Command("&Edit", "redo", "&Redo", "Ctrl+Shift+Z", "Do it again"),
-    Command("&Edit", "copy", "&Copy picture", "Ctrl+C", "Copy the chosen column's picture", separator=True),
+    _OF["copy"],
     Command("&Edit", "dice", "&New seed", "D", "Another seed for all columns"),
-    Command("&Edit", "reset", "R&eset parameters", "", "Defaults for the chosen column"),
+    _OF["reset"],
     Command("&Edit", "palette", "Command &palette ...", "Ctrl+K", "Find any command by its name", separator=True),
     Command("&Column", "add", "&Add column", "Ctrl+T", "Add a column"),
-    Command("&Column", "duplicate", "&Duplicate column", "Ctrl+D", "Copy the chosen column to compare settings"),
-    Command("&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column"),
-    Command("&Column", "left", "Move &left", "Ctrl+Shift+Left", "Move the chosen column to the left"),
-    Command("&Column", "right", "Move &right", "Ctrl+Shift+Right", "Move the chosen column to the right"),
+    _OF["duplicate"],
+    _OF["remove"],
+    _OF["use"],
+    _OF["left"],
+    _OF["right"],
     Command("&Column", "four", "The &four methods", "", "Heeger-Bergen, De Bonet, MSG, Efros-Leung side by side"),
     Command("&Column", "spectra", "Compare s&pectra", "", "Uncoded, MSG, CAR and AC-H with one phase (Fig. 8)"),
     Command("&Column", "previous", "&Previous column", "Ctrl+PgUp", "Choose the column to the left"),
     Command("&Column", "next", "&Next column", "Ctrl+PgDown", "Choose the column to the right"),
-    Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),
-    Command(
-        "&Column", "go-on", "&Go on", "F6", "Go on from where the column stands, also after enlarging the size"
-    ),
-    Command("&Column", "stop", "&Stop column", "Esc", "Stop the chosen column"),
+    _OF["run"],
+    _OF["go-on"],
+    _OF["stop"],
     Command("&Column", "run-all", "Run a&ll", "Shift+F5", "Run every column"),
     Command("&Column", "stop-all", "S&top all", "Shift+Esc", "Stop every column"),
     Command("&View", "fit", "&Fit", "F", "Show the pictures whole"),

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
 from texlab.widgets.plain import set_tip
+from texlab.window.toolbar import LAYOUTS
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
@@ -17,6 +18,8 @@ from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.columns.workspace import Workspace
     from texlab.runs.controller import Controller
     from texlab.window.exchange import Exchange
@@ -52,6 +55,7 @@ class Handlers(QObject):
         self._turning.setSingleShot(True)
         self._turning.setInterval(TURN_MS)
         self._turning.timeout.connect(lambda: self._session.finish_merge(self._turned))
+        self._to_column = self._by_column()
         for name, handler in self._by_action().items():
             window.actions_by_name[name].triggered.connect(handler)
 
@@ -59,36 +63,39 @@ class Handlers(QObject):
         """Wait for nothing any more."""
         self._turning.stop()
 
+    def _by_column(self) -> dict[str, Callable[[int], Any]]:
+        """Return what every command of ``COLUMN_COMMANDS`` does to a column."""
+        session, controller, exchange = self._session, self._controller, self._exchange
+        return {
+            "go-on": controller.go_on,
+            "duplicate": lambda column_id: self.select(session.duplicate_column(column_id)),
+            "left": lambda column_id: session.move_column(column_id, -1),
+            "right": lambda column_id: session.move_column(column_id, 1),
+            "export": exchange.export,
+            "copy": exchange.copy,
+            "use": self._use,
+            "remove": session.remove_column,
+            "run": controller.run_column,
+            "stop": controller.stop_column,
+            "reset": controller.reset_params,
+        }
+
     def _by_action(self) -> dict[str, Any]:
         session, controller, link = self._session, self._controller, self._workspace.link
         exchange, desk = self._exchange, self._desk
-
-        def chosen() -> int:
-            return session.selected_id
-
         handlers: dict[str, Any] = {
             "open": exchange.ask_open,
             "paste": exchange.paste,
-            "export": lambda: exchange.export(chosen()),
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,
-            "copy": lambda: exchange.copy(chosen()),
             "dice": lambda: session.set_seed(secrets.randbelow(MAX_SEED + 1)),
-            "reset": lambda: controller.reset_params(chosen()),
             "palette": desk.show_palette,
             "add": self.choose_new_column,
-            "duplicate": lambda: self.select(session.duplicate_column(chosen())),
-            "remove": lambda: session.remove_column(chosen()),
-            "left": lambda: session.move_column(chosen(), -1),
-            "right": lambda: session.move_column(chosen(), 1),
             "four": lambda: self.lay_out(FIRST_SIGHT, "the four methods"),
             "spectra": lambda: self.lay_out(FIG_8, "compare spectra"),
             "previous": lambda: self._step_column(-1),
             "next": lambda: self._step_column(1),
-            "run": lambda: controller.run_column(chosen()),
-            "stop": lambda: controller.stop_column(chosen()),
-            "go-on": lambda: controller.go_on(chosen()),
             "run-all": controller.run_all,
             "stop-all": controller.stop_all,
             "fit": link.fit,
@@ -102,7 +109,9 @@ class Handlers(QObject):
             "shortcuts": lambda: desk.show_help("shortcuts"),
             "about": desk.show_about,
         }
-        for layout in ("explore", "teach", "tune"):
+        for name in self._to_column:
+            handlers[name] = lambda name=name: self.column_command(session.selected_id, name)
+        for layout in LAYOUTS:
             handlers[f"layout-{layout}"] = partial(self._arrange, layout)
         return {name: _without_argument(call) if name != "tile" else call for name, call in handlers.items()}
 
@@ -110,7 +119,7 @@ class Handlers(QObject):
         column = self._session.selected_column
         fields = describe(type(column.params)) if column is not None else ()
         table = any(field.type is ThresholdTable for field in fields)
-        self._window.arrange(layout, tuning="thresholds" if table else "histograms")
+        self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
         self._workspace.link.fit()
 
     def turn(self, what: str, change: Any) -> None:
@@ -127,24 +136,13 @@ class Handlers(QObject):
         self._session.select(column_id)
 
     def column_command(self, column_id: int, name: str) -> None:
-        """Do what was chosen in a column's menu."""
-        session = self._session
-        if name == "duplicate":
-            self.select(session.duplicate_column(column_id))
-        elif name in ("left", "right"):
-            session.move_column(column_id, -1 if name == "left" else 1)
-        elif name == "remove":
-            session.remove_column(column_id)
-        elif name == "export":
-            self._exchange.export(column_id)
-        elif name == "copy":
-            self._exchange.copy(column_id)
-        elif name == "go-on":
-            self._controller.go_on(column_id)
-        elif name == "use":
-            scene = self._controller.column_scene(column_id)
-            if scene is not None and scene.result is not None:
-                self._opener.use_as_exemplar(scene.result)
+        """Do a command of ``COLUMN_COMMANDS`` to a column."""
+        self._to_column[name](column_id)
+
+    def _use(self, column_id: int) -> None:
+        scene = self._controller.column_scene(column_id)
+        if scene is not None and scene.result is not None:
+            self._opener.use_as_exemplar(scene.result)
 
     def select(self, column_id: int) -> None:
         """Choose a column and bring it into view."""

@@ -6,29 +6,27 @@ import base64
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QByteArray, QChildEvent, QEvent, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QByteArray, QChildEvent, QEvent, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QActionGroup, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QApplication,
     QDockWidget,
     QMainWindow,
     QMenu,
-    QSpinBox,
     QTabBar,
-    QToolBar,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
 from texlab.form.panel import ParametersView
-from texlab.style.theme import apply_theme, set_text_size
+from texlab.style.theme import apply_theme
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
+from texlab.window.layouts import Layouts
 from texlab.window.message_bar import MessageBar
 from texlab.window.mime import source_of
-from texlab_core.engine.job import MAX_SEED
+from texlab.window.toolbar import ToolBar
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
@@ -37,9 +35,6 @@ if TYPE_CHECKING:
     from texlab.state.session import Session
     from texlab.storage.settings import Settings
     from texlab.style.theme import Theme, ThemeSource
-
-MAX_SIDE = 4096
-TEACH_FACTOR = 1.35
 
 
 class MainWindow(QMainWindow):
@@ -50,7 +45,6 @@ class MainWindow(QMainWindow):
 
     dropped = Signal(object)
     closing = Signal()
-    dock_shown = Signal()
 
     def __init__(self, settings: Settings, themes: ThemeSource) -> None:
         super().__init__()
@@ -62,9 +56,9 @@ class MainWindow(QMainWindow):
         self.resize(1280, 800)
         self.settings = settings
         self.themes = themes
-        self._points = QApplication.font().pointSizeF()
         self.actions_by_name = make_actions(self)
         self.docks: dict[str, QDockWidget] = {}
+        self.layouts = Layouts(self, self.docks, settings, themes)
         self.message_bar = MessageBar()
         self._middle = QWidget()
         self._middle.setObjectName("middle")
@@ -86,12 +80,13 @@ class MainWindow(QMainWindow):
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.LeftDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self._make_menus()
-        self._make_toolbar()
+        self.toolbar = ToolBar(self.actions_by_name)
+        self.addToolBar(self.toolbar)
         self._make_status()
         self._restore_geometry()
         self.show_theme(themes.theme)
         if settings.text("layout") == "teach":
-            self._set_text_size("teach")
+            self.layouts.set_text_size("teach")
         themes.changed.connect(self.show_theme)
 
     # Building.
@@ -170,68 +165,6 @@ class MainWindow(QMainWindow):
             action.setStatusTip(dock.toolTip())
             action.triggered.connect(partial(self._go_to_panel, name))
 
-    def _make_toolbar(self) -> None:
-        bar = QToolBar("Tools")
-        bar.setObjectName("toolbar")
-        bar.setMovable(False)
-        bar.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
-        self.addToolBar(bar)
-        act = self.actions_by_name
-        short = {
-            "open": "Open", "dice": "⚄", "tile": "Tile 2×2", "run-all": "Run all", "stop-all": "Stop",
-            "export": "Save", "add": "+ Column", "undo": "↶", "redo": "↷", "help": "?",
-        }  # fmt: skip
-        for name, text in short.items():
-            act[name].setIconText(text)
-        bar.addAction(act["open"])
-        bar.addAction(act["export"])
-        bar.addSeparator()
-        bar.addAction(act["undo"])
-        bar.addAction(act["redo"])
-        bar.addSeparator()
-        bar.addWidget(Label("Seed "))
-        self.seed_box = QSpinBox()
-        self.seed_box.setObjectName("seed-box")
-        self.seed_box.setAccessibleName("Seed")
-        self.seed_box.setRange(0, MAX_SEED)
-        self.seed_box.setKeyboardTracking(False)
-        set_tip(self.seed_box, "Seed of all columns: the same seed and parameters make the same bits")
-        self.seed_box.setValue(1)
-        bar.addWidget(self.seed_box)
-        bar.addAction(act["dice"])
-        bar.addSeparator()
-        bar.addWidget(Label("Size "))
-        self.width_box, self.height_box = QSpinBox(), QSpinBox()
-        for box, name in ((self.width_box, "Width"), (self.height_box, "Height")):
-            box.setObjectName(f"{name.lower()}-box")
-            box.setAccessibleName(name)
-            box.setRange(8, MAX_SIDE)
-            box.setSingleStep(32)
-            box.setKeyboardTracking(False)
-            set_tip(box, f"{name} of the results, in pixels")
-            box.setValue(256)
-        bar.addWidget(self.width_box)
-        bar.addWidget(Label(" × "))
-        bar.addWidget(self.height_box)
-        bar.addSeparator()
-        for name in ("tile", "add", "run-all", "stop-all"):
-            bar.addAction(act[name])
-        spring = QWidget()
-        spring.setSizePolicy(spring.sizePolicy().Policy.Expanding, spring.sizePolicy().Policy.Preferred)
-        bar.addWidget(spring)
-        layouts = QToolButton()
-        layouts.setObjectName("layout-button")
-        layouts.setText("Layout")
-        set_tip(layouts, "Arrange the panels for exploring, teaching or tuning")
-        layouts.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        menu = QMenu(layouts)
-        for name in ("explore", "teach", "tune"):
-            menu.addAction(act[f"layout-{name}"])
-        layouts.setMenu(menu)
-        bar.addWidget(layouts)
-        bar.addAction(act["help"])
-        self.toolbar = bar
-
     def _make_status(self) -> None:
         bar = self.statusBar()
         self.pixel_label = Label("")
@@ -248,11 +181,6 @@ class MainWindow(QMainWindow):
         bar.addPermanentWidget(self.jobs_label)
         bar.addPermanentWidget(self.memory_label)
 
-    @property
-    def size_shown(self) -> tuple[int, int]:
-        """Height and width in the boxes."""
-        return self.height_box.value(), self.width_box.value()
-
     # Showing.
 
     def show_theme(self, theme: Theme) -> None:
@@ -265,13 +193,7 @@ class MainWindow(QMainWindow):
     def show_session(self, session: Session) -> None:
         """Show seed, size and what undo and redo would do."""
         state = session.state
-        for box, value in (
-            (self.seed_box, state.seed),
-            (self.width_box, state.size[1]),
-            (self.height_box, state.size[0]),
-        ):
-            with QSignalBlocker(box):
-                box.setValue(value)
+        self.toolbar.show_values(state.seed, state.size)
         for name, text in (("undo", session.undo_text), ("redo", session.redo_text)):
             action = self.actions_by_name[name]
             action.setEnabled(text is not None)
@@ -291,39 +213,6 @@ class MainWindow(QMainWindow):
             action.triggered.connect(partial(chosen, path))
             self.recent_menu.addAction(action)
 
-    def arrange(self, layout: str, tuning: str = "histograms") -> None:
-        """Arrange the panels: ``explore``, ``teach`` or ``tune``; ``tuning`` is the tab in front for the last."""
-        gallery, parameters = self.docks["gallery"], self.docks["parameters"]
-        tabs = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
-        self._bring_home(gallery, parameters, tabs)
-        gallery.setVisible(layout == "explore")
-        parameters.setVisible(layout != "teach")
-        self._set_text_size(layout)
-        for dock in tabs:
-            dock.show()
-        if tabs:
-            front = {"explore": "pyramid", "teach": "pyramid", "tune": tuning}[layout]
-            self.docks.get(front, tabs[0]).raise_()
-            height = {"explore": 0.33, "teach": 0.45, "tune": 0.3}[layout]
-            self.resizeDocks([tabs[0]], [round(self.height() * height)], Qt.Orientation.Vertical)
-        width = {"explore": 270, "teach": 270, "tune": 420}[layout]
-        self.resizeDocks([parameters], [width], Qt.Orientation.Horizontal)
-        self.settings.values["layout"] = layout
-
-    def _bring_home(self, gallery: QDockWidget, parameters: QDockWidget, tabs: list[QDockWidget]) -> None:
-        """Put every dock that was dragged elsewhere where it belongs."""
-        areas = Qt.DockWidgetArea
-        homes = {gallery: areas.LeftDockWidgetArea, parameters: areas.RightDockWidgetArea}
-        for dock in self.docks.values():
-            home = homes.get(dock, areas.BottomDockWidgetArea)
-            if dock.isFloating():
-                dock.setFloating(False)
-            if self.dockWidgetArea(dock) != home:
-                self.addDockWidget(home, dock)
-        if tabs and set(self.tabifiedDockWidgets(tabs[0])) != set(tabs[1:]):
-            for dock in tabs[1:]:
-                self.tabifyDockWidget(tabs[0], dock)
-
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""
         dock = self.docks.get(name)
@@ -334,12 +223,6 @@ class MainWindow(QMainWindow):
 
     def _go_to_panel(self, name: str, _: bool = False) -> None:
         self.raise_dock(name)
-
-    def _set_text_size(self, layout: str) -> None:
-        application = QApplication.instance()
-        if isinstance(application, QApplication):
-            points = self._points * (TEACH_FACTOR if layout == "teach" else 1.0)
-            set_text_size(application, points, self.themes.theme)
 
     def _choose_theme(self, choice: Any) -> None:
         self.settings.values["theme"] = choice

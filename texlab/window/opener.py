@@ -15,19 +15,20 @@ if TYPE_CHECKING:
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
     from texlab.storage.settings import Settings
+    from texlab_core.documents.presets import Preset
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.result import Result
 
 
 class Opener:
-    """Opens and saves through the controller's background workers; presets go to ``import_preset(path)``."""
+    """Opens and saves through the controller's background workers; presets go to ``import_preset(preset)``."""
 
     def __init__(
         self,
         session: Session,
         controller: Controller,
         settings: Settings,
-        import_preset: Callable[[str], None],
+        import_preset: Callable[[Preset], None],
     ) -> None:
         self._session = session
         self._controller = controller
@@ -68,8 +69,9 @@ class Opener:
         self._controller.once("open-document", work, self._take_document)
 
     def _take_document(self, document: Document) -> None:
+        if document.preset is not None:
+            self._import_preset(document.preset)
         if document.code is None:
-            self._import_preset(document.path)
             return
         state, column_id = with_code(self._session.state, document.code, self._session.selected_id)
         self._session.apply(state, f"code {document.code.name}")

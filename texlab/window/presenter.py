@@ -90,7 +90,8 @@ class Presenter(QObject):
         self._window.jobs_label.setText(" · ".join(texts) or "ready")
         scene_chosen = scene.selected
         finished = scene_chosen is not None and scene_chosen.result is not None
-        self._window.actions_by_name["export"].setEnabled(finished)
+        for name in ("export", "use"):
+            self._window.actions_by_name[name].setEnabled(finished)
         self.painted.emit()
 
     def show_marks(self, marks: tuple[Mark, ...]) -> None:

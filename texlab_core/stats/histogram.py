@@ -175,38 +175,19 @@ def tables(target: Sample, bins: int = PAPER_BINS) -> Tables:
     return Tables(low, high, cdf, np.interp(np.linspace(0, 1, bins + 1), cdf, edges))
 
 
-def match_tables(values: NDArray[Any], target: Tables) -> Sample:
+def match_tables_in_place(values: Sample, target: Tables) -> Task[None]:
     """Give the values about the target's distribution: through their cdf and the target's inverse cdf.
 
     Equal values stay equal, and what is finer than a bin of the target is lost: with 256 bins as in the paper this
-    can be seen; with :data:`PREVIEW_BINS` the distance left is below 1e-3 standard deviations.
+    can be seen; with :data:`PREVIEW_BINS` the distance left is below 1e-3 standard deviations. Works in pieces of
+    at most about 5 ms.
 
     Parameters
     ----------
     values
-        Any shape, finite.
+        float32, C-contiguous, any shape, finite; overwritten.
     target
         From :func:`tables`; the values get as many bins.
-
-    Returns
-    -------
-    ndarray
-        float32, of the same shape.
-    """
-    matched = np.array(values, np.float32, order="C")
-    finish(match_tables_in_place(matched, target))
-    return matched
-
-
-def match_tables_in_place(values: Sample, target: Tables) -> Task[None]:
-    """Do :func:`match_tables` in place, in pieces of at most about 5 ms.
-
-    Parameters
-    ----------
-    values
-        float32, C-contiguous, any shape; overwritten.
-    target
-        As in :func:`match_tables`.
 
     Yields
     ------

@@ -79,11 +79,6 @@ class ArrayCache:
 _CACHE = ArrayCache(256 * 2**20)
 
 
-def forget() -> None:
-    """Drop all responses."""
-    _CACHE.clear()
-
-
 def highpass(size: Size, dtype: np.dtype[Any]) -> Task[Mask]:
     """Return the response of the high-pass residual on the half spectrum of an image of this size."""
 

@@ -66,11 +66,6 @@ class MaskCanvas(PicturePane):
         self._show_mask()
         self.changed.emit()
 
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is a stroke to take back."""
-        return bool(self._undo)
-
     def undo(self) -> None:
         """Take the last stroke back."""
         if self._undo:
@@ -133,7 +128,7 @@ class MaskCanvas(PicturePane):
             super().keyPressEvent(event)
 
     def _place(self, event: QMouseEvent) -> tuple[float, float]:
-        point = self.view.mapSceneToView(self.mapToScene(event.position().toPoint()))
+        point = self.view_place(event.position().toPoint())
         return float(point.y()), float(point.x())
 
     def _begin(self, place: tuple[float, float]) -> None:

@@ -77,12 +77,6 @@ class Grid:
         low = 2 * _spread(np.array([row & inside]), shift) + _spread(np.array([column & inside]), shift)
         return (cell << 2 * shift) + int(low[0])
 
-    def to_quadtree(self, level: int, raster: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Reorder (height, width, ...) into (count, ...)."""
-        out = np.empty((self.count(level), *raster.shape[2:]), raster.dtype)
-        out[self.order(level)] = raster
-        return out
-
 
 @lru_cache(maxsize=64)
 def _parts(grid: Grid, level: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -15,8 +15,6 @@ from texlab_core.methods.spectral.digits import keep_digits
 from texlab_core.transforms.gabor_bank import CHANNELS, OCTAVES, ORIENTATIONS, WHITE_BANDWIDTHS, WIDTHS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from texlab_core.methods.spectral.fourier import Floats
     from texlab_core.methods.spectral.tone import Tone
 
@@ -93,10 +91,6 @@ class MsgCode:
         Reference: Navarro & Portilla 1996, table 2 ("normalized with respect to their mean value").
         """
         return 100 * np.sqrt(self.energy_table()) / max(self.residual.mean, 1e-9)
-
-    def with_energies(self, change: Callable[[Floats], Floats]) -> Self:
-        """Return a code whose (4, 4) energies were changed."""
-        return replace(self, energies=channels(change(self.energy_table())))
 
     def quantized(self, levels: int) -> Self:
         """Return the code with every bandwidth at the nearest of a few levels; see :func:`quantize`."""

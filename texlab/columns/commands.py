@@ -1,0 +1,74 @@
+"""What can be done to one column: declared once for its own menu, the window's menus, the palette and the keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of the window.
+
+    Parameters
+    ----------
+    menu, name, text, keys, help
+        Where it is found in the menus, its name, text, keys and explanation.
+    checkable
+        It is on or off.
+    separator
+        A line goes before it in the menu.
+    own
+        Its text in the column's own menu; "" keeps it out of there.
+    """
+
+    menu: str
+    name: str
+    text: str
+    keys: str = ""
+    help: str = ""
+    checkable: bool = False
+    separator: bool = False
+    own: str = ""
+
+
+COLUMN_COMMANDS = {
+    command.name: command
+    for command in (
+        Command(
+            "&Column", "go-on", "&Go on", "F6", "Go on from where it stands, also at a larger size",
+            own="Go on from here",
+        ),
+        Command(
+            "&Column", "duplicate", "&Duplicate column", "Ctrl+D", "Copy the chosen column to compare settings",
+            own="Duplicate column",
+        ),
+        Command(
+            "&Column", "left", "Move &left", "Ctrl+Shift+Left", "Move the chosen column to the left",
+            own="Move left",
+        ),
+        Command(
+            "&Column", "right", "Move &right", "Ctrl+Shift+Right", "Move the chosen column to the right",
+            own="Move right",
+        ),
+        Command(
+            "&File", "export", "&Save result ...", "Ctrl+S", "Save the chosen column's result with its recipe",
+            own="Save result as PNG ...",
+        ),
+        Command(
+            "&Edit", "copy", "&Copy picture", "Ctrl+C", "Copy the chosen column's picture", separator=True,
+            own="Copy picture",
+        ),
+        Command(
+            "&Column", "use", "Use result as e&xemplar", "", "Make the chosen column's result the exemplar",
+            own="Use result as exemplar",
+        ),
+        Command(
+            "&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column",
+            own="Remove column",
+        ),
+        Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),
+        Command("&Column", "stop", "&Stop column", "Esc", "Stop the chosen column"),
+        Command("&Edit", "reset", "R&eset parameters", "", "Defaults for the chosen column"),
+    )
+}  # fmt: skip
+"""By name, those of the column's own menu in its order."""
