@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from texlab_core.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from texlab_core.api import available_methods, synthesize
+    from texlab_core.api import available_methods, compare, sweep, synthesize
     from texlab_core.documents.record import read_recipe, save_result
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, exemplar_of
@@ -27,9 +27,11 @@ if TYPE_CHECKING:
     from texlab_core.engine.streams import Streams
     from texlab_core.errors import Cancelled, ImageError, InputError, ParamError, RecipeError
     from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.progress import progress_bar
+    from texlab_core.series import Series
 
 _HOMES = {
-    "api": ("available_methods", "synthesize"),
+    "api": ("available_methods", "compare", "sweep", "synthesize"),
     "documents.record": ("read_recipe", "save_result"),
     "engine.cache": ("AnalysisCache",),
     "engine.inputs": ("ArraysInput", "Crop", "DataInput", "ImageInput", "exemplar_of"),
@@ -42,6 +44,8 @@ _HOMES = {
     "engine.streams": ("Streams",),
     "errors": ("Cancelled", "ImageError", "InputError", "ParamError", "RecipeError"),
     "images.exemplar": ("as_exemplar",),
+    "progress": ("progress_bar",),
+    "series": ("Series",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -65,17 +69,21 @@ __all__ = [
     "Params",
     "RecipeError",
     "Result",
+    "Series",
     "Step",
     "Streams",
     "as_exemplar",
     "available_methods",
+    "compare",
     "describe",
     "exemplar_of",
     "find_method",
+    "progress_bar",
     "read_recipe",
     "register",
     "run",
     "save_result",
+    "sweep",
     "synthesize",
 ]
 

@@ -29,7 +29,7 @@ class Crop:
     width: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Origin:
     """Where an exemplar was taken from: the source image, scaled first, then cropped.
 
@@ -47,8 +47,12 @@ class Origin:
     scale: float = 1.0
     crop: Crop | None = None
 
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<Origin: {_extent(self.pixels)}, scale {self.scale:g}, crop {self.crop}>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ImageInput:
     """An image as methods get it.
 
@@ -85,8 +89,12 @@ class ImageInput:
         """1 (gray) or 3 (RGB)."""
         return int(self.pixels.shape[2])
 
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<ImageInput: {shorten(self.name)}, {_extent(self.pixels)}, SHA-256 {self.sha256[:12]}...>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class DataInput:
     """A small JSON document as input: a code of 69 numbers, say."""
 
@@ -99,8 +107,12 @@ class DataInput:
         object.__setattr__(self, "name", printable(self.name))
         object.__setattr__(self, "sha256", hashlib.sha256(text.encode()).hexdigest())
 
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<DataInput: {shorten(self.name)}, SHA-256 {self.sha256[:12]}...>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ArraysInput:
     """Named arrays as input: a state to go on from. The arrays are copied and made read-only."""
 
@@ -116,6 +128,20 @@ class ArraysInput:
         object.__setattr__(self, "name", printable(self.name))
         object.__setattr__(self, "arrays", frozen_mapping(copies))
         object.__setattr__(self, "sha256", hash_arrays(copies))
+
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<ArraysInput: {shorten(self.name)}, {len(self.arrays)} arrays, SHA-256 {self.sha256[:12]}...>"
+
+
+def shorten(text: str, longest: int = 60) -> str:
+    """Return a text as a short line shows it."""
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."
+
+
+def _extent(pixels: NDArray[Any]) -> str:
+    sides = " x ".join(str(side) for side in pixels.shape[-2::-1])
+    return f"{sides} pixels, {'gray' if pixels.shape[-1] == 1 else 'colour'}"
 
 
 Input = ImageInput | DataInput | ArraysInput

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, Input
+from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, Input, shorten
 from texlab_core.engine.params import Params, frozen_mapping
 from texlab_core.engine.registry import Method, find_method
 from texlab_core.errors import InputError, ParamError
@@ -22,7 +22,7 @@ DEFAULT_SIZE = (256, 256)
 _KINDS = {"image": ImageInput, "data": DataInput, "arrays": ArraysInput}
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Job:
     """Everything that is needed to make a result, bit for bit.
 
@@ -69,6 +69,17 @@ class Job:
     def _default_size(self) -> tuple[int, int]:
         exemplar = self.inputs.get("exemplar")
         return exemplar.size if isinstance(exemplar, ImageInput) else DEFAULT_SIZE
+
+    @property
+    def brief(self) -> str:
+        """What is done, in a few words: "de-bonet on gallery:oriented-fur, 512 x 256, seed 3"."""
+        exemplar = self.inputs.get("exemplar") or next(iter(self.inputs.values()), None)
+        on = "" if exemplar is None else f" on {shorten(exemplar.name)}"
+        return f"{self.method}{on}, {' x '.join(map(str, self.size[::-1]))}, seed {self.seed}"
+
+    def __repr__(self) -> str:
+        """Return one short line, whatever the size of the inputs."""
+        return f"<Job: {self.brief}>"
 
     @property
     def analysis_key(self) -> tuple[object, ...]:

@@ -55,7 +55,7 @@ class Step:
         return self.done / self.total if self.total else 1.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Map:
     """Data on the result's own grid; colour is the view's.
 
@@ -77,8 +77,12 @@ class Map:
     title: str
     unit: str = ""
 
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<Map: {self.title}, {self.kind}, {' x '.join(map(str, self.data.shape))} {self.data.dtype}>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Curve:
     """A series of numbers: ``y`` over ``x``, (n,) float64 each.
 
@@ -91,6 +95,10 @@ class Curve:
     x_label: str = "iteration"
     y_label: str = ""
     reference: bool = False
+
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<Curve: {self.title}, {self.y.size} points>"
 
     @classmethod
     def of(
@@ -109,7 +117,7 @@ class Curve:
         return cls(places, values, title, x_label, y_label, reference)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Output:
     """What a method's ``synthesize`` returns.
 
@@ -133,3 +141,7 @@ class Output:
     measures: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     details: Any = None
+
+    def __repr__(self) -> str:
+        """Return one short line."""
+        return f"<Output: {' x '.join(map(str, self.image.shape))} {self.image.dtype}>"

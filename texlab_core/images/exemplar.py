@@ -35,7 +35,7 @@ def as_exemplar(
     Parameters
     ----------
     source
-        An array (H, W) or (H, W, 1 | 3 | 4) of uint8, uint16 or floats; an image input; the path or the bytes of a
+        An array (H, W) or (H, W, 1 | 3 | 4), of any real type; an image input; the path or the bytes of a
         PNG, JPEG, TIFF, WebP, BMP, PGM or PPM file; or "gallery:NAME".
     name
         For people and recipes; by default the file's name.
@@ -58,6 +58,12 @@ def as_exemplar(
     ImageError
         When it cannot be read, is empty, too small or too large (64 megapixels), has values that are not finite,
         or the crop does not lie inside.
+
+    Notes
+    -----
+    Values of arrays and files become shares by one rule. Bools are 0 and 1; unsigned integers are divided by the
+    largest value of their type; signed integers and floats are used as they are when all lie in 0 to 1, and are
+    otherwise mapped from their own smallest and largest value to 0 and 1, which ``notes`` says.
     """
     if isinstance(source, ImageInput):
         if crop is None and scale == 1.0:
@@ -106,10 +112,13 @@ def _from_array(array: NDArray[Any], name: str) -> Decoded:
     if array.ndim != 3 or array.shape[2] not in (1, 3, 4):
         raise ImageError(f"{name}: the shape must be (H, W) or (H, W, 1, 3 or 4), got {array.shape}.")
     check_pixels(array.shape[1], array.shape[0], name)
-    if array.dtype in (np.uint8, np.uint16):
+    # As for files: what has no sign is a share of its largest value, the rest is taken as it is or mapped.
+    if array.dtype.kind == "b":
+        return Decoded(array.astype(np.uint8), 1)
+    if array.dtype.kind == "u":
         return Decoded(array, int(np.iinfo(array.dtype).max))
-    if array.dtype.kind != "f":
-        raise ImageError(f"{name}: the values must be uint8, uint16 or floats, got {array.dtype}.")
+    if array.dtype.kind not in "if":
+        raise ImageError(f"{name}: the values must be bools, integers or floats, got {array.dtype}.")
     return Decoded(array, None)
 
 

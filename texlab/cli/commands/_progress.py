@@ -25,24 +25,9 @@ def progress(title: str) -> Iterator[Callable[[Step], None] | None]:
     if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from texlab_core.progress import progress_bar
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[stage]}", style="dim", markup=False),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        # The analysis is a small part of every method; its bar gives way to that of the synthesis.
-        task = bar.add_task(title, total=1.0, stage="")
-
-        def show(step: Step) -> None:
-            bar.update(task, completed=step.fraction if step.phase == "synthesis" else 0.0, stage=step.stage)
-
+    with progress_bar(title) as show:
         yield show
 
 
