@@ -108,3 +108,23 @@ def test_what_cannot_work_is_said_in_one_sentence(texlab: Texlab, arguments: tup
     assert says in shown.err
     assert shown.err.count("\n") == 1
     assert not Path("s.png").exists()
+
+
+def test_the_answer_holds_the_measures_by_id(texlab: Texlab, tmp_path: Path) -> None:
+    sheet = tmp_path / "measures.png"
+    shown = texlab(
+        "compare",
+        "gallery:stochastic-gravel",
+        "--methods",
+        "uncoded,tiling",
+        "--crop",
+        "64x64+0+0",
+        "--out",
+        sheet,
+        "--json",
+    )
+    found = {each["method"]: each["measures"] for each in json.loads(shown.out)["methods"]}
+    assert found["tiling"]["copied-share"] == found["tiling"]["tile-share"] == 1
+    assert found["tiling"]["visual-difference"] < 1e-3 < found["uncoded"]["visual-difference"]
+    assert found["uncoded"]["discriminability"] > found["tiling"]["discriminability"]
+    assert "copied-share" not in found["uncoded"]

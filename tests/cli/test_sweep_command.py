@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from PIL import Image
@@ -34,12 +35,9 @@ def answer(captured):
 def test_one_knob_for_people(call, tmp_path):
     words = (GRAVEL, "--method", "stub", "--vary", "level=0:2:3", "--crop", "32x24+8+4", "--size", "40x20")
     lines = call(*words).out.splitlines()
-    assert lines == [
-        "level 0, median 7",
-        "level 1, median 7",
-        "level 2, median 7",
-        f"{tmp_path / 'sheet.png'}: 3 cells",
-    ]
+    for level, line in enumerate(lines[:3]):
+        assert re.fullmatch(rf"level {level}, V 0\.\d\d, copied {25 * level}%, candidates 7", line)
+    assert lines[3:] == [f"{tmp_path / 'sheet.png'}: 3 cells"]
     with Image.open(tmp_path / "sheet.png") as sheet:
         assert sheet.mode == "RGB"
     recipe = find_sweep(str(tmp_path / "sheet.png"))
@@ -77,12 +75,13 @@ def test_json(call):
     assert found["vary"] == [{"name": "level", "values": [1.0, 3.0]}]
     assert found["size"] == {"width": 20, "height": 20}
     assert [cell["values"] for cell in found["cells"]] == [{"level": 1.0}, {"level": 3.0}]
-    assert found["cells"][0]["candidates"] == 7
+    assert found["cells"][0]["candidates"] == found["cells"][0]["measures"]["median-candidates"] == 7
     assert found["cells"][0]["error"] is None
     assert found["cells"][1] == {
         "values": {"level": 3.0},
         "copied": None,
         "candidates": None,
+        "measures": {},
         "elapsed_s": None,
         "error": "level: 3 is what this stub fails at.",
     }

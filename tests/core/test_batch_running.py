@@ -27,6 +27,8 @@ from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import quantize
+from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.subject import Subject
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,7 +43,7 @@ def test_every_combination_is_what_one_call_makes(tmp_path: Path) -> None:
         )
         kept = read_image(tmp_path / "out" / row.picture, "picture").values
         assert np.array_equal(kept, quantize(alone.image, 255).reshape(kept.shape))
-        assert row.measures == {name: float(value) for name, value in alone.measures.items()}
+        assert row.measures == measure_quick(Subject.of_result(alone))
     order = [(row.about["input"], row.about["variant"], row.about["seed"]) for row in result.rows]
     assert order == [
         (f"in/photo-{number}.png", method, seed)

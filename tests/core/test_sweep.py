@@ -14,10 +14,12 @@ from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
-from texlab_core.engine.steps import Map, Output
+from texlab_core.engine.steps import Map
 from texlab_core.errors import Cancelled, InputError, ParamError
+from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.subject import Subject
 from texlab_core.sheets.sweep import Cell, Sweep, Vary, sweep_of
-from texlab_core.sheets.sweep_running import evidence_of, run_sweep
+from texlab_core.sheets.sweep_running import run_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 
@@ -174,8 +176,9 @@ def test_cells_equal_single_runs_bit_for_bit(workers):
         alone = run(cell.job)
         assert np.array_equal(cell.result.image, alone.image)
         assert cell.result.measures == alone.measures
-        assert cell.candidates == 7
-        assert cell.copied is None
+        assert cell.measures == measure_quick(Subject.of_result(alone))
+        assert cell.measures["median-candidates"] == 7
+        assert cell.measures["copied-share"] == cell.job.params.level / 4
         assert cell.result.maps == {}
         assert cell.result.model is None
     assert shares == sorted(shares)
@@ -205,11 +208,12 @@ def test_a_failing_cell_keeps_its_sentence_and_the_others_go_on():
     assert [cell.error for cell in cells] == ["", "level: 3 is what this stub fails at.", ""]
     assert cells[1].result is None
     assert cells[1].label == "level 3, failed"
-    assert cells[0].label == "level 1, median 7"
+    assert cells[0].label.startswith("level 1, ")
+    assert cells[0].label.endswith("candidates 7")
 
 
 def test_an_unexpected_failure_is_logged_and_kept(caplog, monkeypatch):
-    monkeypatch.setattr("texlab_core.sheets.sweep_running.evidence_of", lambda _: 1 / 0)
+    monkeypatch.setattr("texlab_core.sheets.sweep_running.measure_quick", lambda _: 1 / 0)
     cells = run_sweep(sweep_of(base(), ["level=1,2"]))
     assert cells[0].error == "Something unexpected happened (ZeroDivisionError: division by zero)."
     assert "ZeroDivisionError" in caplog.text
@@ -238,17 +242,18 @@ def test_a_cell_that_waits_for_an_analysis_can_be_stopped():
 
 
 @pytest.mark.parametrize(
-    ("values", "copied", "candidates", "label"),
+    ("values", "measures", "label"),
     [
-        ({"alpha": 0.15, "beta": 1.0}, 0.9449, 14.0, "alpha 0.15, beta 1, copied 94%, median 14"),
-        ({"seed": 7}, None, None, "seed 7"),
-        ({"window": 15}, 1.0, 12345.0, "window 15, copied 100%, median 1.234e+04"),
-        ({"sibling_rule": "parity", "exact": True}, None, 2.5, "sibling rule parity, exact yes, median 2.5"),
-        ({"alpha": 1 / 3}, None, None, "alpha 0.3333"),
+        ({"alpha": 0.15, "beta": 1.0}, {"copied-share": 0.9449}, "alpha 0.15, beta 1, copied 94%"),
+        ({"seed": 7}, {"cuts": 3.0}, "seed 7"),
+        ({"window": 15}, {"copied-share": 1.0, "median-candidates": 1234.0}, None),
+        ({"exact": True}, {"median-candidates": 2.5, "cuts": 4.0}, "exact yes, candidates 2.5"),
+        ({"alpha": 1 / 3}, {}, "alpha 0.3333"),
     ],
 )
-def test_labels(values, copied, candidates, label):
-    assert Cell(index=0, job=base(), values=values, copied=copied, candidates=candidates).label == label
+def test_labels(values, measures, label):
+    expected = "window 15, copied 100%, candidates 1,234" if label is None else label
+    assert Cell(index=0, job=base(), values=values, measures=measures).label == expected
 
 
 def test_evidence_comes_from_the_maps():
@@ -256,10 +261,10 @@ def test_evidence_comes_from_the_maps():
     source = np.stack([rows, columns], axis=2)
     counts = np.arange(64, dtype=np.int32).reshape(8, 8)
     maps = {"source": Map(source, "source", "Source"), "count": Map(counts, "count", "Candidates")}
-    output = Output(image=np.zeros((8, 8, 1), np.float32), maps=maps)
-    assert evidence_of(output) == (1.0, 31.5)
-    measured = dataclasses.replace(output, measures={"median-candidates": 3.0, "copied-share": 0.0})
-    assert evidence_of(measured) == (1.0, 3.0)
+    output = Subject(image=np.zeros((8, 8, 1), np.float32), maps=maps)
+    assert measure_quick(output) == {"copied-share": 1.0, "largest-copy": 1.0, "median-candidates": 31.5}
+    said = dataclasses.replace(output, given={"median-candidates": 3.0, "exact-share": 0.5})
+    assert measure_quick(said) == measure_quick(output) | {"median-candidates": 3.0, "exact-share": 0.5}
 
 
 class OnePlace:

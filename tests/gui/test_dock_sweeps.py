@@ -305,8 +305,8 @@ def test_every_cell_is_what_the_core_makes(qtbot, bench):
     assert dock.heading.text() == "Stub: level across, border down · noise, 64 x 64, seed 5"
     assert dock.sheet.canvas.columns == 3
     assert [dock.cells[k].cell.label for k in (0, 5)] == [
-        "level 0, border reflect, median 7",
-        "level 2, border wrap, median 7",
+        "level 0, border reflect, V 0.68, copied 0%, candidates 7",
+        "level 2, border wrap, V 0.68, copied 50%, candidates 7",
     ]
     for index, shown in dock.cells.items():
         job = dock.sweep.jobs[index]
@@ -390,7 +390,9 @@ def test_cells_wait_for_the_places_of_the_columns(qtbot, bench):
     assert running == []
     slots.release()
     qtbot.waitUntil(lambda: not here.dock.running, timeout=PATIENCE_MS)
-    assert len(running) == 6
+    # The thread that loads methods in advance may have come by; it needs no place.
+    warming = {each.ident for each in threading.enumerate() if each.name == "texlab-warming"}
+    assert len([each for each in running if each not in warming]) == 6
     # A sweep that waits can be stopped as well.
     assert slots.acquire(lambda: False)
     start(qtbot, here.dock)
@@ -468,7 +470,10 @@ def test_the_keyboard_takes_a_cell(qtbot, bench):
     for key in (Qt.Key.Key_Right, Qt.Key.Key_Down, Qt.Key.Key_Down, Qt.Key.Key_Left, Qt.Key.Key_Right):
         qtbot.keyClick(canvas, key)
     assert canvas.current == 4
-    assert canvas.accessibleDescription() == "level 1, border wrap, median 7. Click to take the parameters."
+    assert (
+        canvas.accessibleDescription()
+        == "level 1, border wrap, V 0.68, copied 25%, candidates 7. Click to take the parameters."
+    )
     qtbot.keyClick(canvas, Qt.Key.Key_Return)
     assert here.params == StubParams(level=1.0, border="wrap")
     qtbot.keyClick(canvas, Qt.Key.Key_End)

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from texlab_core.documents.reading import KEY
 from texlab_core.documents.recipe import recipe_json
 from texlab_core.images.formats.writing import encode_image, encode_png, quantize
+from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.subject import Subject
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -59,7 +61,7 @@ def finish(result: Result, *, bits: Bits = 8) -> Picture:
         png=encode_image("result.png", result.image, bits=bits, text={KEY: recipe}),
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
-        measures={name: _finite(value) for name, value in result.measures.items()},
+        measures=dict(measure_quick(Subject.of_result(result))),
         notes=result.notes,
     )
 

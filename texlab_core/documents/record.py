@@ -16,7 +16,7 @@ from texlab_core.images.formats.maps import save_maps
 from texlab_core.images.formats.writing import check_format, encode_image, write_image
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from texlab_core.engine.result import Result
     from texlab_core.images.formats.writing import Bits
@@ -59,7 +59,9 @@ def save_result(result: Result, path: str | os.PathLike[str], *, bits: Bits = 8)
         write_image(path, result.image, bits=bits, text={KEY: recipe})
 
 
-def summary(result: Result, out: str | os.PathLike[str] | None) -> dict[str, Any]:
+def summary(
+    result: Result, out: str | os.PathLike[str] | None, measures: Mapping[str, float] | None = None
+) -> dict[str, Any]:
     """Return the object that ``texlab synth --json`` prints; numbers that are not finite are null.
 
     Parameters
@@ -68,7 +70,10 @@ def summary(result: Result, out: str | os.PathLike[str] | None) -> dict[str, Any
         What was made.
     out
         Where it was saved, if it was.
+    measures
+        Numbers about it by id; None takes those that the method says itself.
     """
+    measures = result.measures if measures is None else measures
     job = result.job
     height, width = job.size
     exemplar = job.inputs.get("exemplar")
@@ -90,7 +95,7 @@ def summary(result: Result, out: str | os.PathLike[str] | None) -> dict[str, Any
             }
             for name, curve in result.curves.items()
         },
-        "measures": dict(zip(result.measures, _numbers(result.measures.values()), strict=True)),
+        "measures": dict(zip(measures, _numbers(measures.values()), strict=True)),
     }
 
 

@@ -62,10 +62,11 @@ def frames(method: str, exemplar: ImageInput, size: int, seed: int = 1, **values
 
 def evidence(result: Result) -> str:
     """Return the share of copied neighbours as a caption."""
-    from texlab_core.sheets.sweep_running import evidence_of
+    from texlab_core.measures.registry import find_measure, written
+    from texlab_core.measures.subject import Subject
 
-    copied = evidence_of(result)[0]
-    return "" if copied is None else f"copied {copied:.2f}"
+    copied = find_measure("copied-share").of(Subject.of_result(result))
+    return "" if copied is None else written({"copied-share": copied}, ["copied-share"])[0]
 
 
 def picture(cell: Cell) -> FloatImage | None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.figures import Figure
 from texlab_core.figures._tools import evidence, make, page, picture, texture, title_of
+from texlab_core.measures.registry import written
 from texlab_core.sheets.contact_sheet import Tile
 from texlab_core.sheets.sweep_recipes import find_sweep
 from texlab_core.sheets.sweep_running import run_sweep
@@ -48,7 +49,7 @@ def series(name: str) -> NDArray[np.uint8]:
 def alpha_beta() -> NDArray[np.uint8]:
     """Draw alpha across and beta down."""
     sweep = find_sweep("de-bonet-alpha-beta").sweep()
-    tiles = [Tile(picture(cell), (f"copied {cell.copied or 0:.2f}",)) for cell in run_sweep(sweep)]
+    tiles = [Tile(picture(cell), tuple(written(cell.measures, ["copied-share"]))) for cell in run_sweep(sweep)]
     heads = [[f"{axis.name} {value:g}" for value in axis.values] for axis in sweep.axes]
     return page(tiles, len(heads[0]), column_heads=heads[0], row_heads=heads[1])
 

@@ -8,6 +8,7 @@ from texlab_core.engine.registry import find_method
 from texlab_core.figures import Figure
 from texlab_core.figures._charts import heat_table, stack
 from texlab_core.figures._tools import make, page, texture, title_of
+from texlab_core.measures.registry import written
 from texlab_core.sheets.comparison import FIG_8, compare, plan
 from texlab_core.sheets.contact_sheet import Tile
 
@@ -28,7 +29,7 @@ def comparison() -> NDArray[np.uint8]:
         tiles.append(Tile(exemplar.pixels, (title_of(name),)))
         for each in compare(plan(exemplar, FIG_8, seed=1, same_phase=True)):
             image = None if each.result is None else each.result.image
-            tiles.append(Tile(image, (f"{each.distance:.1f} dB",)))
+            tiles.append(Tile(image, tuple(written(each.measures, ["spectral-distance"]))))
     heads = ["original", *(_head(name) for name in FIG_8)]
     return page(tiles, len(heads), column_heads=heads)
 

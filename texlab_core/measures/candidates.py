@@ -30,6 +30,7 @@ register(
         function=_median,
         form=",.4g",
         reference="J. S. De Bonet, SIGGRAPH 1997, section 3.2",
+        live=True,
         order=70,
     )
 )

@@ -195,6 +195,7 @@ register(
         function=_share,
         form=".0%",
         reference="J. S. De Bonet, SIGGRAPH 1997, figs. 11 and 12",
+        live=True,
         order=35,
     )
 )
@@ -209,6 +210,7 @@ register(
         needs=("source",),
         function=_largest,
         form=".0%",
+        live=True,
         order=36,
     )
 )

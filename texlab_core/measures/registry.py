@@ -224,7 +224,8 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
     subject
         What to measure.
     ids
-        Which measures; None takes all but the slow ones. Those that the subject lacks something for are left out.
+        Which measures; None takes all but the slow ones, and what the method says under names of its own. Those
+        that the subject lacks something for are left out.
 
     Raises
     ------
@@ -233,11 +234,32 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
     Cancelled
         When ``subject.look`` says so.
     """
+    known = measures()
     wanted = None if ids is None else {find_measure(each).id for each in ids}
     found: dict[str, float] = {}
-    for measure in measures().values():
+    for measure in known.values():
         if measure.id in wanted if wanted is not None else not measure.slow:
             value = measure.of(subject)
             if value is not None:
                 found[measure.id] = value
-    return found
+    return found if ids is not None else found | _unknown(subject)
+
+
+def measure_quick(subject: Subject) -> dict[str, float]:
+    """Return the live measures, and whatever else the method has said already: what costs next to nothing."""
+    chosen = [each.id for each in measures().values() if each.live or each.id in subject.given]
+    return measure_all(subject, chosen) | _unknown(subject)
+
+
+def _unknown(subject: Subject) -> dict[str, float]:
+    """Return what a method says under names that nobody registers: it is not lost, but has no words either."""
+    known = measures()
+    return {
+        name: float(value) for name, value in subject.given.items() if name not in known and math.isfinite(value)
+    }
+
+
+def written(values: Mapping[str, float], ids: Iterable[str]) -> list[str]:
+    """Return some of the numbers with titles, as they are written everywhere: ``["D -3.12", "copied 94%"]``."""
+    known = [(find_measure(each), values[each]) for each in ids if each in values]
+    return [f"{measure.title} {measure.text(value)}" for measure, value in known]

@@ -69,6 +69,7 @@ register(
         function=_distance,
         unit="dB",
         form=".1f",
+        live=True,
         order=50,
     )
 )
@@ -84,6 +85,7 @@ register(
         needs=("exemplar",),
         function=_variation,
         form=".0%",
+        live=True,
         order=51,
     )
 )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from threading import Event, Lock
 from typing import TYPE_CHECKING
 
@@ -15,8 +15,9 @@ from texlab_core.engine.job import MAX_SEED, Job, check_seed
 from texlab_core.engine.registry import find_method, methods
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.measures.registry import measure_all, written
+from texlab_core.measures.subject import PreparedCache, Subject
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
-from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -28,10 +29,11 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import Step
-    from texlab_core.stats.spectrum import Spectrum
 
 # The paper's Fig. 8, and the four papers' own methods.
 FIG_8 = ("uncoded", "msg", "car", "ac-h")
+# What is said under a result, line by line.
+SHEET_MEASURES = (("discriminability", "visual-difference"), ("spectral-distance", "spectral-variation"))
 FIRST_SIGHT = ("heeger-bergen", "de-bonet", "msg", "efros-leung")
 
 
@@ -45,38 +47,31 @@ class Compared:
         What was done.
     result
         None when it failed.
-    distance
-        Log-spectral distance from the exemplar, in dB.
-    variation
-        Total variation between the spectra, 0 to 1.
+    measures
+        Numbers about the result, by id.
     error
         Why it failed, one sentence.
     """
 
     job: Job
     result: Result | None
-    distance: float = 0.0
-    variation: float = 0.0
+    measures: Mapping[str, float] = field(default_factory=dict)
     error: str = ""
 
     @property
     def parameters(self) -> int | None:
         """How many numbers the method keeps of the exemplar; None when it keeps the exemplar itself."""
-        count = None if self.result is None else self.result.measures.get("parameters")
+        count = self.measures.get("parameters")
         return None if count is None else int(count)
 
     def caption(self) -> tuple[str, ...]:
-        """Return the title, the number of parameters, and the distances as lines of text."""
+        """Return the title, the number of parameters, and the measures of a comparison as lines of text."""
         title = find_method(self.job.method).title
         if self.result is None:
             return (title,)
         count = "" if self.parameters is None else f"{self.parameters} numbers"
-        return tuple(filter(None, (title, count, distance_text(self.distance, self.variation))))
-
-
-def distance_text(distance: float, variation: float) -> str:
-    """Return both distances between spectra as text."""
-    return f"{distance:.1f} dB, {100 * variation:.0f} % of power moved"
+        lines = (", ".join(written(self.measures, ids)) for ids in SHEET_MEASURES)
+        return tuple(filter(None, (title, count, *lines)))
 
 
 def plan(
@@ -132,7 +127,7 @@ def compare(
     on_progress: Callable[[float], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
 ) -> tuple[Compared, ...]:
-    """Run jobs, as many at a time as there are cores, and measure how far their spectra are from the exemplar's.
+    """Run jobs, as many at a time as there are cores, and measure what comes of them.
 
     Parameters
     ----------
@@ -157,7 +152,7 @@ def compare(
         return ()
     shares = [0.0] * len(jobs)
     lock, stop = Lock(), Event()
-    spectra: dict[str, Spectrum] = {}
+    prepared = PreparedCache()
 
     def stopped() -> bool:
         return stop.is_set() or (should_stop is not None and should_stop())
@@ -176,11 +171,7 @@ def compare(
             result = run(job, watch, stopped, threads=1)
         except InputError as error:
             return Compared(job, None, error=str(error))
-        exemplar = job.inputs["exemplar"]
-        with lock:
-            if exemplar.sha256 not in spectra:
-                spectra[exemplar.sha256] = power_spectrum(exemplar.pixels)  # type: ignore[union-attr]
-        return measured(result, spectra[exemplar.sha256])
+        return Compared(job, result, measure_all(Subject.of_result(result, prepared, stopped)))
 
     with ThreadPoolExecutor(min(len(jobs), os.cpu_count() or 1)) as pool:
         try:
@@ -190,14 +181,6 @@ def compare(
             if stopped() and should_stop is not None and should_stop():
                 raise Cancelled from error
             raise
-
-
-def measured(result: Result, exemplar: Spectrum) -> Compared:
-    """Return a result with the distances of its spectrum from the exemplar's."""
-    spectrum = power_spectrum(result.image)
-    return Compared(
-        result.job, result, log_spectral_distance(exemplar, spectrum), total_variation(exemplar, spectrum)
-    )
 
 
 def comparison_sheet(

@@ -15,6 +15,7 @@ from texlab_core.engine.params import Field, Knob, describe, frozen_mapping
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError, ParamError
 from texlab_core.files import strict_json
+from texlab_core.measures.registry import written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -184,10 +185,8 @@ class Cell:
         What came out, without maps, model and details; None when it failed.
     error
         Why it failed, one sentence.
-    copied
-        Share of neighbouring pixels with neighbouring sources, 0 .. 1; None for methods without a source map.
-    candidates
-        Median number of candidates of a pixel; None for methods that count none.
+    measures
+        Numbers about the result by id, as :func:`texlab_core.measures.registry.measure_quick` says them.
     """
 
     index: int
@@ -195,8 +194,7 @@ class Cell:
     values: Mapping[str, Any]
     result: Result | None = None
     error: str = ""
-    copied: float | None = None
-    candidates: float | None = None
+    measures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def setting(self) -> str:
@@ -205,16 +203,17 @@ class Cell:
 
     @property
     def evidence(self) -> str:
-        """Copied share and median candidate count, as far as there are any: "copied 94%, median 14"."""
-        if self.error:
-            return "failed"
-        found = [] if self.copied is None else [f"copied {self.copied:.0%}"]
-        return ", ".join(found if self.candidates is None else [*found, f"median {self.candidates:.4g}"])
+        """The numbers that a sheet says, as far as there are any: "D -3.12, V 0.45, copied 94%, candidates 14"."""
+        return "failed" if self.error else ", ".join(written(self.measures, SHEET_MEASURES))
 
     @property
     def label(self) -> str:
         """Everything in one line."""
         return ", ".join(part for part in (self.setting, self.evidence) if part)
+
+
+# What a cell of a sheet says.
+SHEET_MEASURES = ("discriminability", "visual-difference", "copied-share", "median-candidates")
 
 
 def show(value: object) -> str:

@@ -16,15 +16,15 @@ import numpy as np
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.subject import PreparedCache, Subject
 from texlab_core.sheets.sweep import Cell, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from texlab_core.engine.job import Job
-    from texlab_core.engine.steps import MapKind, Output, Step
+    from texlab_core.engine.steps import Step
 
 _POLL_S = 0.01
 
@@ -123,6 +123,7 @@ class _State:
     def __init__(self, sweep: Sweep, cache: AnalysisCache, places: Places | None) -> None:
         self.sweep = sweep
         self.cache = cache
+        self.prepared = PreparedCache()
         self.places = places
         self.stop = threading.Event()
         self.finished: queue.SimpleQueue[Cell] = queue.SimpleQueue()
@@ -171,9 +172,9 @@ class _State:
             result = run(job, watch, self.stop.is_set, cache=self.cache, threads=threads)
         finally:
             turn.give_back()
-        copied, candidates = evidence_of(result)
+        found = measure_quick(Subject.of_result(result, self.prepared, self.stop.is_set))
         light = dataclasses.replace(result, model=None, maps={}, details=None)
-        return {"result": light, "copied": copied, "candidates": candidates}
+        return {"result": light, "measures": found}
 
     def _lock_of(self, job: Job) -> threading.Lock:
         with self._guard:
@@ -198,20 +199,3 @@ class _Turn:
         if self._held:
             self._held = False
             self._lock.release()
-
-
-def evidence_of(result: Output) -> tuple[float | None, float | None]:
-    """Return the share of copied neighbours and the median candidate count, None where there is no such map."""
-    from texlab_core.measures.copying import continuous_share
-
-    source = _first_map(result, "source")
-    copied = None if source is None else continuous_share(source)
-    candidates = result.measures.get("median-candidates")
-    if candidates is None and (counts := _first_map(result, "count")) is not None:
-        candidates = float(np.median(counts))
-    return copied, candidates
-
-
-def _first_map(result: Output, kind: MapKind) -> NDArray[Any] | None:
-    # One by one: some maps are only computed when they are looked at.
-    return next((each.data for each in map(result.maps.__getitem__, result.maps) if each.kind == kind), None)

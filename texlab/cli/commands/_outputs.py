@@ -64,8 +64,10 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
 def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
     """Return what was made as JSON data."""
     from texlab_core.documents.record import summary
+    from texlab_core.measures.registry import measure_all
+    from texlab_core.measures.subject import Subject
 
-    return summary(result, outputs.image)
+    return summary(result, outputs.image, measure_all(Subject.of_result(result, should_stop=interrupted)))
 
 
 def described(result: Result, outputs: Outputs) -> str:

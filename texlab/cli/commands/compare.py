@@ -89,13 +89,13 @@ def report(compared: Sequence[Compared], out: Path, *, as_json: bool) -> None:
 
 
 def _as_json(each: Compared) -> dict[str, Any]:
-    done = each.result is not None
     return {
         "method": each.job.method,
         "seed": each.job.seed,
         "numbers": each.parameters,
-        "log_spectral_distance_db": each.distance if done else None,
-        "total_variation": each.variation if done else None,
+        "log_spectral_distance_db": each.measures.get("spectral-distance"),
+        "total_variation": each.measures.get("spectral-variation"),
+        "measures": dict(each.measures),
         "elapsed_s": each.result.elapsed_s if each.result is not None else None,
         "error": each.error or None,
     }

@@ -149,8 +149,9 @@ def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) ->
         "cells": [
             {
                 "values": dict(cell.values),
-                "copied": cell.copied,
-                "candidates": cell.candidates,
+                "copied": cell.measures.get("copied-share"),
+                "candidates": cell.measures.get("median-candidates"),
+                "measures": dict(cell.measures),
                 "elapsed_s": None if cell.result is None else cell.result.elapsed_s,
                 "error": cell.error or None,
             }
