@@ -38,6 +38,23 @@ class ImageError(InputError):
     """An image that cannot be read, or cannot be used as asked."""
 
 
+class TooLargeError(ImageError):
+    """An image with too many pixels to be kept whole.
+
+    Parameters
+    ----------
+    sentence
+        For the user.
+    width, height
+        In pixels, as the file states them.
+    """
+
+    def __init__(self, sentence: str, width: int, height: int) -> None:
+        super().__init__(sentence)
+        self.width = width
+        self.height = height
+
+
 class RecipeError(InputError):
     """A recipe (in a saved result) that is missing, malformed or cannot be followed."""
 

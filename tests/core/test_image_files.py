@@ -13,7 +13,7 @@ from PIL import Image, ImageCms, ImageOps
 
 from texlab_core.errors import ImageError
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.images.formats import reading as image_files
+from texlab_core.images.formats import png as png_files
 
 GRAY8 = np.random.default_rng(0).integers(0, 256, (7, 9), dtype=np.uint8)
 RGB8 = np.random.default_rng(1).integers(0, 256, (7, 9, 3), dtype=np.uint8)
@@ -239,8 +239,8 @@ def test_tiff_of_floats_with_a_profile_keeps_its_values_and_cmyk_is_refused():
     array = np.random.default_rng(9).random((7, 9, 3)).astype(np.float32)
     made = as_exemplar(tiff(array, photometric="rgb", iccprofile=imagecodecs.cms_profile("adobergb")))
     assert np.array_equal(made.pixels, array)
-    assert made.notes == ("The colour profile was ignored, because it is applied to 8 and 16 bits only.",)
-    with pytest.raises(ImageError, match=r"is a CMYK TIFF of float32; 8 or 16 bits are read\.$"):
+    assert made.notes == ("The colour profile was ignored, because it is applied to integers without sign only.",)
+    with pytest.raises(ImageError, match=r"is a CMYK TIFF of float32; integers without sign are read\.$"):
         as_exemplar(tiff(np.zeros((4, 4, 4), np.float32), photometric="separated"))
 
 
@@ -286,7 +286,7 @@ def test_sixteen_bit_ppm():
     ("text", "says"),
     [
         (b"P5 2 2 100\n\x00\x01\x63\x65", "values go from 0 to 101, and must be from 0 to 100"),
-        (b"P2 2 2 9 0 -1 2 3", "values go from -1 to 3"),
+        (b"P2 2 2 9 0 -1 2 3", "truncated or damaged (what is no whole number from 0"),
         (b"P2 2 2 9 0 1 2", "truncated or damaged (4 values expected, 3 found)"),
         (b"P2 2 2 9 0 1 x 2", "truncated or damaged"),
         (b"P5 2 2 255\n\x00", "truncated or damaged (4 bytes expected, 1 found)"),
@@ -460,11 +460,11 @@ def test_tiff_that_is_no_picture():
 
 
 @pytest.mark.parametrize(
-    "data", [b"GIF89a" + bytes(50), b"hello, this is text", b"\0" * 100, b"P9 1 1 1", b"RIFFxxxxWAVE"]
+    "data", [b"GIF88a" + bytes(50), b"hello, this is text", b"\0" * 100, b"P9 1 1 1", b"RIFFxxxxWAVE"]
 )
 def test_what_is_no_known_image(data):
     with pytest.raises(
-        ImageError, match=r"^image: is not an image that TexLab reads \(PNG, JPEG, TIFF, WebP, BMP"
+        ImageError, match=r"^image: is not an image that TexLab reads \(PNG, JPEG, TIFF, WebP, AVIF"
     ):
         as_exemplar(data)
 
@@ -489,7 +489,12 @@ def test_paths_that_cannot_be_read(tmp_path, monkeypatch):
 
     missing = tmp_path / "missing.png"
     assert says(missing) == f"{missing}: there is no such file."
-    assert says(tmp_path) == f"{tmp_path}: is a folder, not an image."
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    assert says(folder) == f"{folder}: is a folder, not an image, and there are no pictures in it."
+    for name in ("c.png", "a.jpg", "b.TIF", "notes.txt", "d.hdr"):
+        (folder / name).touch()
+    assert says(folder) == f"{folder}: is a folder, not an image; its pictures: a.jpg, b.TIF, c.png and 1 more."
     assert says("nul\0l.png").startswith("nul\0l.png: cannot be opened (")
     empty = tmp_path / "empty.png"
     empty.write_bytes(b"")
@@ -497,7 +502,7 @@ def test_paths_that_cannot_be_read(tmp_path, monkeypatch):
     below = empty / "a.png"
     assert says(below) == f"{below}: cannot be opened (Not a directory)."
 
-    def refuse(*_):
+    def refuse(*_, **__):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("builtins.open", refuse)
@@ -516,6 +521,6 @@ def test_running_out_of_memory_is_one_sentence(monkeypatch):
     def exhausted(*_):
         raise MemoryError
 
-    monkeypatch.setattr(image_files, "_read_with_pillow", exhausted)
+    monkeypatch.setattr(png_files, "_parts", exhausted)
     with pytest.raises(ImageError, match=r"^image: there is not enough memory to read it\.$"):
         as_exemplar(whole_files()["a.png"])

@@ -72,7 +72,7 @@ def test_float_tiff_is_exact(tmp_path, channels):
     assert np.array_equal(as_exemplar(path).pixels, NOISE[..., :channels])
     with tifffile.TiffFile(path) as tiff:
         assert tiff.pages[0].dtype == np.float32
-        assert tiff.pages[0].description == "what it is"
+        assert tiff.pages[0].description == "TexLab what it is"
 
 
 def test_jpeg_is_close(tmp_path):
@@ -87,8 +87,8 @@ def test_jpeg_is_close(tmp_path):
 @pytest.mark.parametrize(
     ("name", "pixels", "options", "says"),
     [
-        ("a.gif", NOISE, {}, "a.gif: images are written as .png, .tif, .tiff, .jpg, .jpeg, got '.gif'."),
-        ("a", NOISE, {}, "a: images are written as .png, .tif, .tiff, .jpg, .jpeg, got ''."),
+        ("a.gif", NOISE, {}, "a.gif: images are written as .png, .tif, .tiff, .webp, .jpg, .jpeg, got '.gif'."),
+        ("a", NOISE, {}, "a: images are written as .png, .tif, .tiff, .webp, .jpg, .jpeg, got ''."),
         ("a.png", NOISE, {"bits": "float"}, "a.png: the bits of a .png file must be 8 or 16, got 'float'."),
         ("a.jpg", NOISE, {"bits": 16}, "a.jpg: the bits of a .jpg file must be 8, got 16."),
         ("a.tif", NOISE, {"bits": 12}, "a.tif: the bits of a .tif file must be 8 or 16 or float, got 12."),

@@ -233,9 +233,9 @@ def test_what_fits_nowhere_leaves_name_and_hash(tmp_path, photograph):
 def test_a_very_large_source_is_not_encoded_to_find_that_out(monkeypatch):
     sizes = []
 
-    def counting(values, text=None):
+    def counting(values, text=None, *, srgb):
         sizes.append(values.size)
-        return encode_png(values, text)
+        return encode_png(values, text, srgb=srgb)
 
     monkeypatch.setattr("texlab_core.documents.embedding.encode_png", counting)
     assert pack_pixels(levels(height=3600, width=3600)) is None
@@ -538,7 +538,7 @@ def test_reading_never_unpickles(monkeypatch):
 def test_saving_checks_the_format_before_it_writes(tmp_path):
     result = result_of(as_exemplar(levels()))
     with pytest.raises(InputError, match=r"images are written as \.png"):
-        save_result(result, tmp_path / "out.webp")
+        save_result(result, tmp_path / "out.gif")
     with pytest.raises(InputError, match=r"the bits of a \.jpg file must be 8"):
         save_result(result, tmp_path / "out.jpg", bits=16)
     assert not list(tmp_path.iterdir())

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab.state.session import Column, Sample, State
-from texlab_core.engine.inputs import DataInput, ImageInput
 
 if TYPE_CHECKING:
+    from texlab_core.engine.inputs import DataInput, ImageInput
     from texlab_core.engine.job import Job
     from texlab_core.sheets.sweep import Cell
 
@@ -38,7 +38,14 @@ def sample_of(image: ImageInput, path: str | None) -> Sample:
 def sample_as_used(image: ImageInput, path: str | None = None) -> Sample:
     """Return the sample whose exemplar is this image, pixel by pixel."""
     if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):
-        whole = ImageInput(image.origin.pixels, image.name, image.sha256 + ":source", None, image.notes)
+        whole = dataclasses.replace(
+            image,
+            pixels=image.origin.pixels,
+            sha256=image.sha256 + ":source",
+            origin=None,
+            notes=image.origin.notes,
+            alpha=image.origin.alpha,
+        )
         return Sample(whole, image.origin.scale, image.origin.crop, path)
     return Sample(image, 1.0, None, path)
 

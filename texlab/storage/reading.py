@@ -12,9 +12,13 @@ from texlab.storage.kept_exemplar import Kept, kept_path, load
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab_core.documents.presets import Preset
 
 DOCUMENT_SUFFIX = ".json"
+# Where a picture is too large to be kept whole, this much of it is a comfortable source.
+_REDUCED_PIXELS = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ def open_document(path: str) -> Document:
     return Document(preset=presets.preset_from_json(data, what=f"the preset {file.name}"))
 
 
-def open_source(source: str | bytes | Kept) -> Opened:
+def open_source(source: str | bytes | Kept, should_stop: Callable[[], bool] | None = None) -> Opened:
     """Read an image or a saved result (a path, gallery:NAME, the bytes of a file, or what was kept); in a thread.
 
     Raises
@@ -72,7 +76,7 @@ def open_source(source: str | bytes | Kept) -> Opened:
         One sentence when it is neither.
     """
     from texlab_core.documents.reading import read_recipe
-    from texlab_core.errors import NoRecipeError
+    from texlab_core.errors import NoRecipeError, TooLargeError
     from texlab_core.images.exemplar import as_exemplar
 
     if isinstance(source, Kept):
@@ -84,7 +88,12 @@ def open_source(source: str | bytes | Kept) -> Opened:
             image = job.inputs.get("exemplar")
             if isinstance(image, ImageInput):
                 return Opened(image, None, job)
-    return Opened(as_exemplar(source), path)
+    try:
+        image = as_exemplar(source, should_stop=should_stop)
+    except TooLargeError as error:
+        scale = (_REDUCED_PIXELS / (error.width * error.height)) ** 0.5
+        image = as_exemplar(source, scale=scale, should_stop=should_stop)
+    return Opened(image, path)
 
 
 def last_exemplar(saved: Any) -> list[Choice]:

@@ -50,7 +50,7 @@ class Opener:
         number = self._newest
 
         def work(task: Task) -> Opened:
-            return open_source(choice.source)
+            return open_source(choice.source, task.should_stop)
 
         def done(opened: Opened) -> None:
             if number == self._newest:
@@ -110,7 +110,9 @@ class Opener:
         def work(task: Task) -> ImageInput:
             from texlab_core.images.exemplar import as_exemplar
 
-            return as_exemplar(result.image, name=f"{result.job.method} result")
+            image = as_exemplar(result.image, name=f"{result.job.method} result")
+            before = result.job.inputs.get("exemplar")
+            return dataclasses.replace(image, depth=getattr(before, "depth", 8))
 
         self._controller.once("use", work, lambda image: self._session.set_sample(Sample(image)))
 

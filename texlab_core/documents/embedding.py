@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.engine.inputs import Input
+    from texlab_core.engine.inputs import Crop, Input
     from texlab_core.engine.steps import FloatImage
 
 MAX_EMBEDDED = 2 * 2**20
@@ -63,15 +63,28 @@ def _embed_image(given: ImageInput) -> dict[str, Any]:
         "size": {"width": width, "height": height},
         "channels": given.channels,
         "scale": 1.0 if origin is None else origin.scale,
-        "crop": None
-        if crop is None
-        else {"top": crop.top, "left": crop.left, "height": crop.height, "width": crop.width},
+        "crop": _rectangle(crop),
     }
+    if given.depth != 8:
+        entry["depth"] = given.depth
+    if origin is not None and origin.taken is not None:
+        scale, part = origin.taken
+        entry["taken"] = {"scale": scale, "crop": _rectangle(part)}
+    alpha = given.alpha
     if origin is not None and (packed := pack_pixels(origin.pixels)) is not None:
         entry["source"] = packed
+        alpha = origin.alpha
     elif (packed := pack_pixels(given.pixels)) is not None:
         entry["pixels"] = packed
+    if alpha is not None and (packed := pack_pixels(alpha)) is not None:
+        entry["alpha"] = packed
     return entry
+
+
+def _rectangle(crop: Crop | None) -> dict[str, int] | None:
+    if crop is None:
+        return None
+    return {"top": crop.top, "left": crop.left, "height": crop.height, "width": crop.width}
 
 
 def pack_pixels(pixels: FloatImage) -> dict[str, Any] | None:
@@ -159,9 +172,9 @@ def _small_png(values: NDArray[Any]) -> bytes | None:
         # Do not encode a large photograph only to find that it is large.
         middle = values.shape[0] // 2
         band = values[max(0, middle - _BAND // 2) : middle + _BAND // 2]
-        if len(encode_png(band)) * values.shape[0] / band.shape[0] > 4 * MAX_EMBEDDED:
+        if len(encode_png(band, srgb=False)) * values.shape[0] / band.shape[0] > 4 * MAX_EMBEDDED:
             return None
-    png = encode_png(values)
+    png = encode_png(values, srgb=False)
     return png if len(png) <= MAX_EMBEDDED else None
 
 

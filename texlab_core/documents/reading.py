@@ -27,6 +27,8 @@ MAX_BYTES = 32 * 2**20
 _MAX_NAME = 4096
 _MAX_VERSIONS = 64
 _MAX_SIDE = 2**26
+_TIFF_PREFIX = "TexLab "
+_OLD_DESCRIPTION = re.compile(r'\{\s*"texlab"\s*:')
 _HASH = re.compile(r"[0-9a-f]{64}")
 
 
@@ -76,7 +78,7 @@ def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
             found = read_text(file, KEY, MAX_BYTES)
         elif head.startswith((b"II", b"MM")):
             found = _tiff_description(file)
-        elif head.startswith(b"\xff\xd8\xff") and path is not None and sidecar(path).is_file():
+        elif _beside(head) and path is not None and sidecar(path).is_file():
             with open(sidecar(path), "rb") as beside:
                 found = beside.read(MAX_BYTES + 1)
         elif head.lstrip()[:1] == b"{":
@@ -101,7 +103,17 @@ def _tiff_description(file: BinaryIO) -> str | None:
     except Exception as error:
         # tifffile raises all kinds of errors on damaged files.
         raise ValueError("is damaged") from error
-    return text if isinstance(text, str) and text.startswith("{") else None
+    if not isinstance(text, str):
+        return None
+    # With the word before it, or as the first versions wrote it; other programs write JSON there too.
+    if text.startswith(_TIFF_PREFIX + "{"):
+        return text.removeprefix(_TIFF_PREFIX)
+    return text if _OLD_DESCRIPTION.match(text) else None
+
+
+def _beside(head: bytes) -> bool:
+    """Return whether a file is of a format that keeps its recipe in a file beside it."""
+    return head.startswith(b"\xff\xd8\xff") or (head[:4] == b"RIFF" and head[8:12] == b"WEBP")
 
 
 def _parse(text: str | bytes, name: str) -> Recipe:
@@ -172,6 +184,8 @@ def _input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
         raise RecipeError(f"the sha256 of the input {role} must be 64 hexadecimal digits, got {sha256!r:.40}.")
     keys = {"image": ("source", "pixels"), "arrays": ("arrays",), "data": ("data",)}[kind]
     content = {key: entry[key] for key in keys if key in entry}
+    if content and kind == "image" and "alpha" in entry:
+        content["alpha"] = entry["alpha"]
     if kind != "image":
         return RecipeInput(role, kind, name, sha256, None, 1.0, None, frozen_mapping(content))
     for packed in content.values():
@@ -180,7 +194,15 @@ def _input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
     size = _get(entry, "size", dict)
     shape = check_size((size.get("height"), size.get("width")))
     scale, crop = _scale(entry.get("scale", 1.0)), _crop(entry.get("crop"))
-    return RecipeInput(role, kind, name, sha256, shape, scale, crop, frozen_mapping(content))
+    depth = entry.get("depth", 8)
+    if depth not in (8, 16, "float") or isinstance(depth, bool):
+        raise RecipeError(f"the depth of the input {role} must be 8, 16 or float, got {depth!r:.40}.")
+    taken = entry.get("taken")
+    if taken is not None:
+        if not isinstance(taken, dict):
+            raise RecipeError(f"how the input {role} was taken must be an object, got {taken!r:.40}.")
+        taken = _scale(taken.get("scale")), _crop(taken.get("crop"))
+    return RecipeInput(role, kind, name, sha256, shape, scale, crop, frozen_mapping(content), depth, taken)
 
 
 def _scale(value: Any) -> float:

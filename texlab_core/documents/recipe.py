@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.images.exemplar import Source
+    from texlab_core.images.formats.decoded import Depth
 
 VERSION = 1
 
@@ -39,7 +40,12 @@ class RecipeInput:
     scale, crop
         How the image was taken from its source.
     content
-        The encoded source, pixels, arrays or data, under its key; empty when the file does not hold it.
+        The encoded source, pixels, arrays or data, under its key; empty when the file does not hold it. With an
+        image comes its transparency under ``alpha``, where it was kept.
+    depth
+        Of an image: 8, 16 or "float", as its file had it.
+    taken
+        Scale and crop at which a picture was read that is too large to be kept whole.
     """
 
     role: str
@@ -50,6 +56,8 @@ class RecipeInput:
     scale: float
     crop: Crop | None
     content: Mapping[str, Any]
+    depth: Depth = 8
+    taken: tuple[float, Crop | None] | None = None
 
     @property
     def is_embedded(self) -> bool:
@@ -80,9 +88,19 @@ class RecipeInput:
         if self.kind == "data":
             return DataInput(self.content["data"], self.name)
         try:
-            if "source" in self.content:
-                return take(unpack_pixels(self.content["source"], self.name), self.name, self.crop, self.scale)
-            return take(unpack_pixels(self.content["pixels"], self.name), self.name)
+            kind, crop, scale = (
+                ("source", self.crop, self.scale) if "source" in self.content else ("pixels", None, 1.0)
+            )
+            alpha = self.content.get("alpha")
+            return take(
+                unpack_pixels(self.content[kind], self.name),
+                self.name,
+                crop,
+                scale,
+                depth=self.depth,
+                alpha=None if alpha is None else unpack_pixels(alpha, self.name),
+                taken=self.taken,
+            )
         except RecipeError:
             raise
         except InputError as error:
@@ -101,19 +119,39 @@ class RecipeInput:
         ImageError
             When it cannot be read.
         """
-        image = as_exemplar(given)
-        if image.sha256 == self.sha256:
-            return image
-        if self.scale != 1 or self.crop is not None:
-            try:
-                taken = as_exemplar(image, crop=self.crop, scale=self.scale)
-            except InputError:
-                taken = image
-            if taken.sha256 == self.sha256:
-                return taken
+        scale, crop = self.taken or (1.0, None)
+        first = self._read(given, scale, crop, {})
+        # A recipe does not say what was done with transparency; another hash tells that it was something else.
+        others: list[dict[str, Any]] = [{"alpha": "keep"}, {"background": 0.0}]
+        for reading in [None, *others]:
+            image = first if reading is None else self._read(given, scale, crop, reading)
+            if image.sha256 == self.sha256:
+                return image
+            if self.scale != 1 or self.crop is not None:
+                try:
+                    taken = as_exemplar(image, crop=self.crop, scale=self.scale)
+                except InputError:
+                    taken = image
+                if taken.sha256 == self.sha256:
+                    return taken
+        if self.role in ("mask", "region"):
+            from texlab_core.images.masks import as_mask
+
+            if (mask := as_mask(given)).sha256 == self.sha256:
+                return mask
         if not force:
-            raise RecipeError(f"{image.name} is not the image of the recipe, which is {self.described}.")
-        return image
+            raise RecipeError(f"{first.name} is not the image of the recipe, which is {self.described}.")
+        return first
+
+    @staticmethod
+    def _read(given: Source, scale: float, crop: Crop | None, reading: dict[str, Any]) -> ImageInput:
+        """Read an image from outside; one that is not as large as it was is not scaled and cropped again."""
+        if scale == 1 and crop is None:
+            return as_exemplar(given, **reading)
+        try:
+            return as_exemplar(given, scale=scale, crop=crop, **reading)
+        except InputError:
+            return as_exemplar(given, **reading)
 
     @property
     def described(self) -> str:

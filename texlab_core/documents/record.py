@@ -8,36 +8,54 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from texlab_core.documents.reading import KEY, read_recipe, sidecar
 from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.files.whole import write_together
 from texlab_core.images.formats.maps import save_maps
-from texlab_core.images.formats.writing import check_format, encode_image, write_image
+from texlab_core.images.formats.writing import check_format, default_bits, encode_image, write_image
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from texlab_core.engine.result import Result
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.images.formats.writing import Bits
 
-__all__ = ["Recipe", "RecipeInput", "read_recipe", "save_maps", "save_result", "summary"]
+__all__ = [
+    "Recipe",
+    "RecipeInput",
+    "carried_alpha",
+    "read_recipe",
+    "result_bits",
+    "save_maps",
+    "save_result",
+    "summary",
+]
+
+_BESIDE = (".jpg", ".jpeg", ".webp")
 
 
-def save_result(result: Result, path: str | os.PathLike[str], *, bits: Bits = 8) -> None:
+def save_result(
+    result: Result, path: str | os.PathLike[str], *, bits: Bits | None = None, alpha: FloatImage | None = None
+) -> None:
     """Save a result's image with its recipe.
 
-    A PNG has the recipe as a text chunk, a TIFF as its description, and a JPEG as a file ``.texlab.json`` beside
-    it. The recipe holds every input up to 2 MB.
+    A PNG has the recipe as a text chunk, a TIFF as its description, and a JPEG or WebP as a file ``.texlab.json``
+    beside it. The recipe holds every input up to 2 MB.
 
     Parameters
     ----------
     result
         What to save.
     path
-        Ends in .png, .tif, .tiff, .jpg or .jpeg.
+        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg.
     bits
-        8, 16 or "float" (TIFF only) for each sample.
+        8, 16 or "float" (TIFF only) for each sample; by default the exemplar's own, as far as the format goes.
+    alpha
+        Transparency to save with the image, (H, W, 1): see :func:`carried_alpha`.
 
     Raises
     ------
@@ -46,17 +64,51 @@ def save_result(result: Result, path: str | os.PathLike[str], *, bits: Bits = 8)
     InputError
         When a file cannot be written.
     """
+    bits = result_bits(result, path) if bits is None else bits
     suffix = check_format(path, bits)
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
-    if suffix in (".jpg", ".jpeg"):
+    if suffix in _BESIDE:
         write_together(
             {
                 sidecar(path): recipe.encode(),
-                Path(path): encode_image(path, result.image, bits=bits),
+                Path(path): encode_image(path, result.image, bits=bits, alpha=alpha),
             }
         )
     else:
-        write_image(path, result.image, bits=bits, text={KEY: recipe})
+        write_image(path, result.image, bits=bits, text={KEY: recipe}, alpha=alpha)
+
+
+def result_bits(result: Result, path: str | os.PathLike[str]) -> Bits:
+    """Return the depth at which a result is saved under a name unless something else is asked for.
+
+    That is the exemplar's own; 8 bits where a result has none. Raises ``ImageError`` for a name without a format.
+    """
+    exemplar = result.job.inputs.get("exemplar")
+    return default_bits(path, exemplar.depth if isinstance(exemplar, ImageInput) else 8)
+
+
+def carried_alpha(result: Result) -> FloatImage | None:
+    """Return the exemplar's own transparency, carried to the result by its source map.
+
+    Returns
+    -------
+    FloatImage or None
+        (H, W, 1) float32 in [0, 1], 1 where a pixel has no source; None when the exemplar's alpha was not kept or
+        the method has no source map.
+    """
+    exemplar = result.job.inputs.get("exemplar")
+    if not isinstance(exemplar, ImageInput) or exemplar.alpha is None:
+        return None
+    found = result.maps.get("source")
+    if found is None or found.kind != "source":
+        return None
+    source = found.data
+    height, width = exemplar.size
+    rows, columns = source[..., 0], source[..., 1]
+    known = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+    carried = np.ones((*source.shape[:2], 1), np.float32)
+    carried[known] = exemplar.alpha[rows[known], columns[known]]
+    return carried
 
 
 def summary(

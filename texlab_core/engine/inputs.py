@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -41,11 +41,20 @@ class Origin:
         Factor applied to both sides of the source, 0 < scale <= 1.
     crop
         Part of the scaled source, or None for all of it.
+    alpha
+        Transparency of the whole source, (H, W, 1) float32 in [0, 1], read-only, where it is kept.
+    notes
+        What was converted when the source was read, one sentence each.
+    taken
+        Scale and crop at which a picture too large to be kept whole was read; ``pixels`` is what came out.
     """
 
     pixels: FloatImage
     scale: float = 1.0
     crop: Crop | None = None
+    alpha: FloatImage | None = None
+    notes: tuple[str, ...] = ()
+    taken: tuple[float, Crop | None] | None = None
 
     def __repr__(self) -> str:
         """Return one short line."""
@@ -68,6 +77,10 @@ class ImageInput:
         The source it was scaled and cropped from, when that is known.
     notes
         What was converted on the way in, one sentence each.
+    depth
+        8, 16 or "float": the depth of the file or array it came from, at which results are saved by default.
+    alpha
+        Transparency, (H, W, 1) float32 in [0, 1], read-only, where it is kept; methods do not see it.
     """
 
     pixels: FloatImage
@@ -75,6 +88,8 @@ class ImageInput:
     sha256: str
     origin: Origin | None = None
     notes: tuple[str, ...] = ()
+    depth: Literal[8, 16, "float"] = 8
+    alpha: FloatImage | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", printable(self.name))

@@ -24,8 +24,10 @@ BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
 
 def add_output_options(parser: Parser) -> None:
     """Add what ``synth`` and ``redo`` share."""
-    parser.add_argument("--out", required=True, metavar="OUT.png", help="file to write: .png, .tif or .jpg")
-    parser.add_argument("--bits", choices=BITS, help="for each sample: 8 (default), 16, or float in a TIFF")
+    parser.add_argument("--out", required=True, metavar="OUT.png", help="file to write: .png, .tif, .webp or .jpg")
+    parser.add_argument(
+        "--bits", choices=BITS, help="for each sample: 8, 16, or float in a TIFF (default: as the exemplar has)"
+    )
     parser.add_argument("--maps", metavar="DIR", help="also save the maps and curves in this folder")
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -36,26 +38,34 @@ class Outputs:
 
     image: Path
     maps: Path | None
-    bits: Bits
+    bits: Bits | None
+    """None for the exemplar's own."""
 
 
-def check_outputs(args: argparse.Namespace, bits: Bits) -> Outputs:
+def chosen_bits(args: argparse.Namespace) -> Bits | None:
+    """Return the depth that was asked for, if any."""
+    return None if args.bits is None else BITS[args.bits]
+
+
+def check_outputs(args: argparse.Namespace, bits: Bits | None) -> Outputs:
     """Return where to write; raises ``InputError`` when that will not be possible."""
     from texlab_core.images.formats.writing import check_format
 
-    check_format(args.out, bits)
+    check_format(args.out, 8 if bits is None else bits)
     image = output_file(args.out)
     return Outputs(image, None if args.maps is None else output_folder(args.maps), bits)
 
 
 def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
     """Run a job and save what it makes; the sources to ``keep`` are not overwritten by maps."""
-    from texlab_core.documents.record import save_maps, save_result
+    from texlab_core.documents.record import carried_alpha, save_maps, save_result
     from texlab_core.engine.run import run
+    from texlab_core.images.formats.writing import can_hold_alpha
 
     with progress(job.method) as show:
         result = run(job, show, interrupted)
-    save_result(result, outputs.image, bits=outputs.bits)
+    alpha = carried_alpha(result) if can_hold_alpha(outputs.image) else None
+    save_result(result, outputs.image, bits=outputs.bits, alpha=alpha)
     if outputs.maps is not None:
         save_maps(result, outputs.maps, spare=[outputs.image, *keep])
     return result
@@ -73,6 +83,31 @@ def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
 def described(result: Result, outputs: Outputs) -> str:
     """Return what was made in a few lines for people."""
     height, width = result.job.size
-    exemplar = result.job.inputs.get("exemplar")
     made = f"{width} x {height} by {result.job.method}, seed {result.job.seed}, in {result.elapsed_s:.2f} s"
-    return "\n  ".join([f"{outputs.image}: {made}.", *getattr(exemplar, "notes", ()), *result.notes])
+    read = dict.fromkeys(note for each in result.job.inputs.values() for note in getattr(each, "notes", ()))
+    return "\n  ".join([f"{outputs.image}: {made}.", *read, *result.notes, *_saved(result, outputs)])
+
+
+def _saved(result: Result, outputs: Outputs) -> list[str]:
+    """Return what there is to say of depth and transparency."""
+    from texlab_core.documents.record import carried_alpha, result_bits
+    from texlab_core.images.formats.writing import can_hold_alpha
+
+    exemplar = result.job.inputs.get("exemplar")
+    said = []
+    if outputs.bits is None:
+        bits = result_bits(result, outputs.image)
+        own = getattr(exemplar, "depth", 8)
+        shown = {8: "8 bits", 16: "16 bits", "float": "floats"}
+        if own == bits and bits != 8:
+            said.append(f"Saved in {shown[bits]}, as the exemplar has them.")
+        elif own != bits:
+            said.append(f"Saved in {shown[bits]}, the most that the format holds; the exemplar has {shown[own]}.")
+    if getattr(exemplar, "alpha", None) is not None:
+        if not can_hold_alpha(outputs.image):
+            said.append("The format holds no transparency; choose PNG, TIFF or WebP to keep it.")
+        elif carried_alpha(result) is None:
+            said.append("The method keeps no places, so that the exemplar's transparency cannot come along.")
+        else:
+            said.append("The exemplar's transparency was carried along by the source map.")
+    return said

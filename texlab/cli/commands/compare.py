@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_file, parse_crop, parse_number, parse_size, refuse_overwriting
+from texlab.cli.commands._options import output_file, parse_number, parse_size, refuse_overwriting
 from texlab.cli.commands._progress import share_bar
+from texlab.cli.commands._sources import add_scale_options, parse_reading
 from texlab.cli.terminal import interrupted
 
 if TYPE_CHECKING:
@@ -35,8 +36,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="of the first method; the others count on")
     parser.add_argument("--columns", metavar="N", help="pictures in a row (default: one row up to six)")
-    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
-    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    add_scale_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
 
@@ -49,15 +49,13 @@ def execute(args: argparse.Namespace) -> int:
     columns = None if args.columns is None else parse_number("columns", args.columns, int)
     if columns is not None and columns < 1:
         raise ParamError("columns", "a whole number from 1", columns)
-    scale = parse_number("scale", args.scale, float)
-    crop = None if args.crop is None else parse_crop(args.crop)
+    reading = parse_reading(args)
     out = output_file(args.out)
     if out.suffix.lower() != ".png":
         raise ParamError("out", "a file name that ends in .png", args.out)
     refuse_overwriting(out, args.image)
 
     from texlab_core.files.whole import write_whole
-    from texlab_core.images.exemplar import as_exemplar
     from texlab_core.images.formats.writing import encode_png
     from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
     from texlab_core.sheets.contact_sheet import check_sheet, series_columns
@@ -66,7 +64,7 @@ def execute(args: argparse.Namespace) -> int:
         names: Sequence[str] = FIG_8 if args.same_phase else FIRST_SIGHT
     else:
         names = [name.strip() for name in args.methods.split(",")]
-    exemplar = as_exemplar(args.image, scale=scale, crop=crop)
+    exemplar = reading.read(args.image)
     jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase)
     cells = len(jobs) + 1
     check_sheet(cells, columns or series_columns(cells), jobs[0].size)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from texlab.cli.commands._options import output_file, parse_crop, parse_number, refuse_overwriting
-from texlab.cli.commands._sources import CODE_SUFFIX, is_code
+from texlab.cli.commands._options import output_file, refuse_overwriting
+from texlab.cli.commands._sources import CODE_SUFFIX, add_scale_options, is_code, parse_reading
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
@@ -28,8 +28,7 @@ def configure(parser: Parser) -> None:
         default="participation",
         help="how bandwidths are measured (default participation)",
     )
-    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
-    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    add_scale_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
 
@@ -37,17 +36,15 @@ def execute(args: argparse.Namespace) -> int:
     """Measure and save."""
     if not is_code(args.out):
         raise ParamError("out", f"a file name that ends in {CODE_SUFFIX}", args.out)
-    scale = parse_number("scale", args.scale, float)
-    crop = None if args.crop is None else parse_crop(args.crop)
+    reading = parse_reading(args)
     out = output_file(args.out)
     refuse_overwriting(out, args.image)
 
-    from texlab_core.images.exemplar import as_exemplar
     from texlab_core.methods.spectral.codefile import code_to_json, write_code
     from texlab_core.methods.spectral.encoding import encode
     from texlab_core.work.tasks import finish
 
-    exemplar = as_exemplar(args.image, scale=scale, crop=crop)
+    exemplar = reading.read(args.image)
     code, _ = finish(encode(exemplar.pixels, args.bandwidths))
     write_code(code, out, exemplar.name)
     if args.json:

@@ -7,13 +7,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import parse_number, parse_settings, parse_size, refuse_overwriting
-from texlab.cli.commands._outputs import BITS, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.commands._outputs import (
+    add_output_options,
+    check_outputs,
+    chosen_bits,
+    described,
+    make,
+    summary_of,
+)
+from texlab.cli.commands._sources import add_alpha_options, parse_reading
+from texlab.cli.terminal import interrupted
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
+    from texlab.cli.commands._sources import Reading
     from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import ImageInput, Input
 
@@ -25,13 +35,17 @@ METHOD = "efros-leung"
 def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the image to fill")
-    parser.add_argument("--mask", metavar="MASK", help="image of the same size: what is not black is filled")
+    parser.add_argument("--mask", metavar="MASK", help="image of the same size: what is bright is filled")
+    parser.add_argument(
+        "--threshold", metavar="T", help="of masks: what is brighter is marked, 0 <= T < 1 (default 0.5)"
+    )
     parser.add_argument("--transparent", action="store_true", help="fill what is transparent in IMAGE")
     parser.add_argument("--size", metavar="WxH", help="grow the image outward to this size")
     parser.add_argument(
         "--exemplar", metavar="IMAGE|gallery:NAME", help="copy from this image, not from IMAGE itself"
     )
-    parser.add_argument("--region", metavar="MASK", help="as large as the exemplar: copy only what is not black")
+    parser.add_argument("--region", metavar="MASK", help="as large as the exemplar: copy only what is bright")
+    add_alpha_options(parser, keeps=True)
     add_output_options(parser)
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
@@ -56,35 +70,36 @@ def execute(args: argparse.Namespace) -> int:
     params = find_method(METHOD).params.parse(parse_settings(args.set), base)
     size = None if args.size is None else parse_size(args.size)
     seed = parse_number("seed", args.seed, int)
-    outputs = check_outputs(args, BITS[args.bits or "8"])
+    reading = parse_reading(args)
+    threshold = 0.5 if args.threshold is None else parse_number("threshold", args.threshold, float)
+    outputs = check_outputs(args, chosen_bits(args))
     sources = [each for each in (args.image, args.mask, args.exemplar, args.region) if each is not None]
     for each in sources:
         refuse_overwriting(outputs.image, each)
 
     from texlab_core.engine.job import Job
 
-    inputs, image = _inputs(args)
+    inputs, image = _inputs(args, reading, threshold)
     job = Job(method=METHOD, inputs=inputs, params=params, size=size or image.size, seed=seed)
     result = make(job, outputs, keep=sources)
     print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
     return 0
 
 
-def _inputs(args: argparse.Namespace) -> tuple[dict[str, Input], ImageInput]:
+def _inputs(args: argparse.Namespace, reading: Reading, threshold: float) -> tuple[dict[str, Input], ImageInput]:
     """Return the inputs of the job, and the image to fill."""
-    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.images.masks import as_mask
 
-    image = as_exemplar(args.image)
-    inputs: dict[str, Input] = {"exemplar": image if args.exemplar is None else as_exemplar(args.exemplar)}
+    image = reading.read(args.image)
+    inputs: dict[str, Input] = {"exemplar": image if args.exemplar is None else reading.read(args.exemplar)}
     if args.exemplar is not None or (args.mask is None and not args.transparent):
         inputs["start"] = image
-    # What is transparent in a mask is not marked.
     if args.mask is not None:
-        inputs["mask"] = as_exemplar(args.mask, background=0.0)
+        inputs["mask"] = as_mask(args.mask, threshold=threshold, should_stop=interrupted)
     elif args.transparent:
         inputs["mask"] = transparent_part(args.image)
     if args.region is not None:
-        inputs["region"] = as_exemplar(args.region, background=0.0)
+        inputs["region"] = as_mask(args.region, threshold=threshold, should_stop=interrupted)
     return inputs, image
 
 

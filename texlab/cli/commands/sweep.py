@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._options import (
     output_file,
-    parse_crop,
     parse_number,
     parse_settings,
     parse_size,
     refuse_overwriting,
 )
 from texlab.cli.commands._progress import share_bar
+from texlab.cli.commands._sources import add_scale_options, parse_reading
 from texlab.cli.terminal import interrupted, logged_quietly
 
 if TYPE_CHECKING:
@@ -50,8 +50,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
     parser.add_argument("--seed", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
-    parser.add_argument("--scale", metavar="S", help="reduce the image first, 0 < S <= 1")
-    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    add_scale_options(parser)
     parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -89,7 +88,6 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     from texlab_core.documents.preset_store import find_preset
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import InputError
-    from texlab_core.images.exemplar import as_exemplar
     from texlab_core.sheets.sweep import Vary
     from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
 
@@ -113,17 +111,16 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
         changes["size"] = parse_size(args.size)
     if args.seed is not None:
         changes["seed"] = parse_number("seed", args.seed, int)
+    reading = parse_reading(args)
     if args.image is not None:
-        scale = 1.0 if args.scale is None else parse_number("scale", args.scale, float)
-        crop = None if args.crop is None else parse_crop(args.crop)
-        return dataclasses.replace(base, **changes), as_exemplar(args.image, scale=scale, crop=crop)
+        return dataclasses.replace(base, **changes), reading.read(args.image)
     if base.exemplar is None:
         raise InputError("A sweep needs an exemplar: name an image or gallery:NAME.")
     choice = dataclasses.replace(
         base.exemplar,
         sha256=base.exemplar.sha256 if args.scale is None and args.crop is None else "",
-        scale=base.exemplar.scale if args.scale is None else parse_number("scale", args.scale, float),
-        crop=base.exemplar.crop if args.crop is None else parse_crop(args.crop),
+        scale=base.exemplar.scale if args.scale is None else reading.scale,
+        crop=base.exemplar.crop if args.crop is None else reading.crop,
     )
     return dataclasses.replace(base, **changes), choice.load()
 

@@ -7,13 +7,20 @@ import json
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import (
-    parse_crop,
     parse_number,
     parse_settings,
     parse_size,
     refuse_overwriting,
 )
-from texlab.cli.commands._outputs import BITS, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.commands._outputs import (
+    add_output_options,
+    check_outputs,
+    chosen_bits,
+    described,
+    make,
+    summary_of,
+)
+from texlab.cli.commands._sources import add_scale_options, load_inputs, parse_reading
 
 if TYPE_CHECKING:
     import argparse
@@ -35,8 +42,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
-    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
-    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    add_scale_options(parser, keeps=True)
     parser.more_help = _knobs_of_the_method
 
 
@@ -48,17 +54,15 @@ def execute(args: argparse.Namespace) -> int:
     params = method.params.parse(parse_settings(args.set), _base(args))
     size = None if args.size is None else parse_size(args.size)
     seed = parse_number("seed", args.seed, int)
-    scale = parse_number("scale", args.scale, float)
-    crop = None if args.crop is None else parse_crop(args.crop)
-    outputs = check_outputs(args, BITS[args.bits or "8"])
+    reading = parse_reading(args)
+    outputs = check_outputs(args, chosen_bits(args))
     refuse_overwriting(outputs.image, args.image)
 
-    from texlab.cli.commands._sources import load_inputs
     from texlab_core.engine.job import Job
 
     job = Job(
         method=args.method,
-        inputs=load_inputs(args.image, method, scale=scale, crop=crop),
+        inputs=load_inputs(args.image, method, reading),
         params=params,
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,

@@ -34,18 +34,24 @@ def with_text(png: bytes, text: Mapping[str, str]) -> bytes:
     return b"".join([png[:_AFTER_HEADER], *chunks, png[_AFTER_HEADER:]])
 
 
+def with_chunk(png: bytes, kind: bytes, body: bytes) -> bytes:
+    """Return the file with a chunk after its header."""
+    return b"".join([png[:_AFTER_HEADER], chunk(kind, body), png[_AFTER_HEADER:]])
+
+
 def _text_chunk(key: str, value: str) -> bytes:
     name = key.encode("latin-1")
     if not 1 <= len(name) <= _MAX_KEY or b"\0" in name:
         raise ValueError(f"A PNG text key has 1 to {_MAX_KEY} characters, got {key!r}.")
     try:
-        return _chunk(b"tEXt", name + b"\0" + value.encode("latin-1"))
+        return chunk(b"tEXt", name + b"\0" + value.encode("latin-1"))
     except UnicodeEncodeError:
         # Uncompressed, without language and translated key.
-        return _chunk(b"iTXt", name + b"\0\0\0\0\0" + value.encode())
+        return chunk(b"iTXt", name + b"\0\0\0\0\0" + value.encode())
 
 
-def _chunk(kind: bytes, body: bytes) -> bytes:
+def chunk(kind: bytes, body: bytes) -> bytes:
+    """Return a chunk with its length and checksum (PNG specification, section 5.3)."""
     return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
 

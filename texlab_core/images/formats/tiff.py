@@ -10,10 +10,13 @@ import numpy as np
 
 from texlab_core.engine.job import MAX_PIXELS
 from texlab_core.errors import ImageError
-from texlab_core.images.formats.decoded import Decoded, check_pixels, oriented
+from texlab_core.images.formats.decoded import Decoded, oriented
+from texlab_core.images.formats.tiff_pages import check_cost, choose_page
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from texlab_core.images.formats.decoded import Gate
 
 # Photometric interpretations of TIFF 6.0.
 _WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _PALETTE, _INKS, _YCBCR = 0, 1, 2, 3, 5, 6
@@ -28,38 +31,41 @@ _MAX_BYTES = 4 * 8 * MAX_PIXELS
 logging.getLogger("tifffile").addHandler(logging.NullHandler())
 
 
-def read_tiff(file: BinaryIO, name: str) -> Decoded:
-    """Read the first page of a TIFF file."""
+def read_tiff(file: BinaryIO, gate: Gate) -> Decoded:
+    """Read the picture of a TIFF file: its largest page that is no preview."""
     import tifffile
 
     notes: list[str] = []
     with tifffile.TiffFile(file, name="image.tif") as tiff:
-        page: Any = tiff.pages[0]
+        page = choose_page(tiff, gate.name, notes)
         photometric = int(page.photometric)
-        _check_page(page, photometric, name)
+        gate.admit(int(page.imagewidth), int(page.imagelength), effort=0.0)
+        _check_page(page, photometric, gate.name)
+        check_cost(page, file, gate)
         _check_complete(page, file)
-        if (count := len(tiff.pages)) > 1:
-            notes.append(f"The file has {count} pages; the first one was used.")
         values = _samples(page)
         peak: int | None
         if photometric == _PALETTE:
             values, peak = _look_up(values[..., 0], page.colormap)
         else:
-            values, peak = _stored(values, page)
+            values, peak = _stored(values, page, notes)
         if photometric == _WHITE_IS_ZERO:
             values[..., 0] = (1 if peak is None else peak) - values[..., 0]
         values, premultiplied = _drop_extra(values, page, photometric, notes)
+        stored = Decoded(values, peak).depth
         profile = page.tags.get("InterColorProfile")
-        values = _in_srgb(values, None if profile is None else profile.value, photometric, name, notes)
+        values, peak = _in_srgb(values, peak, None if profile is None else profile.value, photometric, gate, notes)
         orientation = page.tags.get("Orientation")
         values = oriented(values, 1 if orientation is None else int(orientation.value), notes)
-    return Decoded(values, peak, tuple(notes), premultiplied)
+    return Decoded(values, peak, tuple(notes), premultiplied, stored)
 
 
 def _check_page(page: Any, photometric: int, name: str) -> None:
-    check_pixels(page.imagewidth, page.imagelength, name)
     samples = page.samplesperpixel
     known = photometric in _COLOURS and (photometric != _YCBCR or int(page.compression) in _JPEG)
+    ink_set = page.tags.get("InkSet")
+    if photometric == _INKS and ink_set is not None and ink_set.value != 1:
+        known = False
     if not known or samples < _COLOURS[photometric]:
         raise ImageError(f"{name}: is a TIFF whose colours TexLab does not read (gray, RGB, palette or CMYK).")
     if page.dtype is None or page.dtype.kind not in "buif":
@@ -72,9 +78,6 @@ def _check_page(page: Any, photometric: int, name: str) -> None:
             f"{name}: has {samples} channels of {page.dtype} in {page.imagewidth} x {page.imagelength} pixels; "
             f"at most {_MAX_BYTES // 2**30} GB are decoded."
         )
-    # A tile may be larger than its image, and is decoded whole.
-    if np.prod([int(side) for side in page.chunks], dtype=np.float64) > 4 * MAX_PIXELS:
-        raise ImageError(f"{name}: is a TIFF with tiles that are too large.")
 
 
 def _check_complete(page: Any, file: BinaryIO) -> None:
@@ -96,13 +99,20 @@ def _samples(page: Any) -> NDArray[Any]:
     return np.moveaxis(stored[:, 0], 0, 2).reshape(height, width, planes * interleaved)
 
 
-def _stored(values: NDArray[Any], page: Any) -> tuple[NDArray[Any], int | None]:
+def _stored(values: NDArray[Any], page: Any, notes: list[str]) -> tuple[NDArray[Any], int | None]:
     if values.dtype.kind == "b":
         return values.astype(np.uint8), 1
-    if values.dtype.kind == "u":
-        bits = page.bitspersample
-        return values.copy(), 2 ** (bits if isinstance(bits, int) else max(bits)) - 1
-    return values.copy(), None
+    if values.dtype.kind != "u":
+        return values.copy(), None
+    bits = page.bitspersample
+    peak = 2 ** (bits if isinstance(bits, int) else max(bits)) - 1
+    declared = page.tags.get("MaxSampleValue")
+    largest = np.max(declared.value) if declared is not None and np.size(declared.value) else peak
+    # A declaration that the values go beyond is none.
+    if 1 <= largest < peak and int(values.max()) <= largest:
+        notes.append(f"The file declares {int(largest)} as its largest value, which is taken for white.")
+        return values.copy(), int(largest)
+    return values.copy(), peak
 
 
 def _look_up(index: NDArray[Any], table: NDArray[np.uint16]) -> tuple[NDArray[Any], int]:
@@ -128,16 +138,27 @@ def _drop_extra(values: NDArray[Any], page: Any, photometric: int, notes: list[s
 
 
 def _in_srgb(
-    values: NDArray[Any], profile: bytes | None, photometric: int, name: str, notes: list[str]
-) -> NDArray[Any]:
+    values: NDArray[Any],
+    peak: int | None,
+    profile: bytes | None,
+    photometric: int,
+    gate: Gate,
+    notes: list[str],
+) -> tuple[NDArray[Any], int | None]:
     inks = photometric == _INKS
     if not inks and not profile:
-        return values
-    if values.dtype not in (np.uint8, np.uint16):
+        return values, peak
+    if peak is None:
         if inks:
-            raise ImageError(f"{name}: is a CMYK TIFF of {values.dtype}; 8 or 16 bits are read.")
-        notes.append("The colour profile was ignored, because it is applied to 8 and 16 bits only.")
-        return values
-    from texlab_core.images.formats.profiles import to_srgb
+            raise ImageError(f"{gate.name}: is a CMYK TIFF of {values.dtype}; integers without sign are read.")
+        notes.append("The colour profile was ignored, because it is applied to integers without sign only.")
+        return values, peak
+    from texlab_core.images.formats.profiles import MAX_PROFILE, to_srgb, whole_range
 
-    return to_srgb(values, profile, cmyk=inks, notes=notes)
+    if profile is not None and len(profile) > MAX_PROFILE:
+        notes.append("The colour profile is too large and was ignored.")
+        profile = None
+    if not inks and profile is None:
+        return values, peak
+    converted = to_srgb(whole_range(values, peak), profile, cmyk=inks, notes=notes)
+    return converted, int(np.iinfo(converted.dtype).max)

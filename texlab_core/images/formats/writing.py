@@ -1,4 +1,4 @@
-"""Write images: PNG of 8 or 16 bits, TIFF of 8 or 16 bits or floats, JPEG; whole or not at all."""
+"""Write images: PNG of 8 or 16 bits, TIFF of 8 or 16 bits or floats, lossless WebP, JPEG; whole or not at all."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from texlab_core.errors import ImageError
 from texlab_core.files.whole import write_whole
-from texlab_core.images.formats.png_text import with_text
+from texlab_core.images.formats.png_text import with_chunk, with_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,16 +19,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Bits = Literal[8, 16, "float"]
-WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".jpg", ".jpeg")
+WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg")
 _BITS: dict[str, tuple[Bits, ...]] = {
     ".png": (8, 16),
     ".tif": (8, 16, "float"),
     ".tiff": (8, 16, "float"),
+    ".webp": (8,),
     ".jpg": (8,),
     ".jpeg": (8,),
 }
 _ROWS = 256
 _JPEG_QUALITY = 95
+_MAX_WEBP_SIDE = 16383
+# Perceptual intent (PNG specification, 11.3.2.5).
+_SRGB = b"\0"
+_TIFF_PREFIX = "TexLab "
 
 
 def write_image(
@@ -37,6 +42,7 @@ def write_image(
     *,
     bits: Bits = 8,
     text: Mapping[str, str] | None = None,
+    alpha: NDArray[np.floating[Any]] | None = None,
 ) -> None:
     """Write an image; the suffix of the path chooses the format. See :func:`encode_image`.
 
@@ -47,7 +53,7 @@ def write_image(
     InputError
         When the file cannot be written; what was there before stays as it was.
     """
-    write_whole(path, encode_image(path, pixels, bits=bits, text=text))
+    write_whole(path, encode_image(path, pixels, bits=bits, text=text, alpha=alpha))
 
 
 def encode_image(
@@ -56,20 +62,24 @@ def encode_image(
     *,
     bits: Bits = 8,
     text: Mapping[str, str] | None = None,
+    alpha: NDArray[np.floating[Any]] | None = None,
 ) -> bytes:
     """Return the bytes of an image file.
 
     Parameters
     ----------
     path
-        Ends in .png, .tif, .tiff, .jpg or .jpeg, which chooses the format.
+        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg, which chooses the format.
     pixels
         (H, W) or (H, W, 1 | 3) floats in [0, 1]; integers of a file are rounded to the nearest, and values outside
         are clipped. Floats are written as float32, as they are.
     bits
         8, 16 or "float" for each sample.
     text
-        Texts by key, for PNG; a TIFF takes one ASCII text, its description.
+        Texts by key, for PNG; a TIFF takes one ASCII text, its description, after the word TexLab: what starts
+        with a brace and has a "shape" is taken by other programs for a description of theirs.
+    alpha
+        (H, W) or (H, W, 1) floats in [0, 1], for all formats but JPEG; colours are not multiplied by it.
 
     Raises
     ------
@@ -90,13 +100,61 @@ def encode_image(
         )
     if not np.isfinite(image).all():
         raise ImageError(f"{name}: the image has values that are not finite, and cannot be written.")
+    if alpha is not None:
+        image = _with_alpha(image, np.asarray(alpha), suffix, name)
     image = image[..., 0] if image.shape[2:] == (1,) else image
     values = image.astype(np.float32) if bits == "float" else quantize(image, 2**bits - 1)
     if suffix == ".png":
         return encode_png(values, text)
     if suffix in (".tif", ".tiff"):
         return _encode_tiff(values, text)
-    return _encode_jpeg(values, text)
+    return _encode_webp(values, text, name) if suffix == ".webp" else _encode_jpeg(values, text)
+
+
+def _with_alpha(
+    image: NDArray[np.floating[Any]], alpha: NDArray[np.floating[Any]], suffix: str, name: str
+) -> NDArray[np.floating[Any]]:
+    if not can_hold_alpha(suffix):
+        raise ImageError(f"{name}: a JPEG file holds no transparency; choose PNG, TIFF or WebP.")
+    if alpha.shape[:2] != image.shape[:2] or alpha.size != image.shape[0] * image.shape[1]:
+        raise ImageError(f"{name}: the transparency must be as large as the image, got {alpha.shape}.")
+    if not np.isfinite(alpha).all():
+        raise ImageError(f"{name}: the transparency has values that are not finite, and cannot be written.")
+    planes = image.reshape(*image.shape[:2], -1)
+    return np.concatenate([planes, alpha.reshape(*alpha.shape[:2], 1).astype(planes.dtype)], axis=2)
+
+
+def can_hold_alpha(path: str | os.PathLike[str]) -> bool:
+    """Return whether files of this name or suffix hold transparency."""
+    return not os.fspath(path).lower().endswith((".jpg", ".jpeg"))
+
+
+def default_bits(path: str | os.PathLike[str], depth: Bits) -> Bits:
+    """Return the depth at which a result is saved by default: that of its exemplar, as far as the format has it.
+
+    Parameters
+    ----------
+    path
+        The file to write.
+    depth
+        ``ImageInput.depth`` of the exemplar.
+
+    Raises
+    ------
+    ImageError
+        When no image can be written under this name.
+    """
+    allowed = _BITS[check_format(path)]
+    return depth if depth in allowed else allowed[-1]
+
+
+def named_with_suffix(path: str | os.PathLike[str], suffix: str) -> Path:
+    """Return the path with the suffix of the chosen format, unless it ends in one that is written already.
+
+    ``wall.v2`` and .png make ``wall.v2.png``, since what follows a dot may be part of the name.
+    """
+    given = Path(path)
+    return given if given.suffix.lower() in _BITS else given.with_name(given.name + suffix)
 
 
 def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
@@ -130,13 +188,14 @@ def quantize(pixels: NDArray[np.floating[Any]], peak: int) -> NDArray[Any]:
     return values
 
 
-def encode_png(values: NDArray[Any], text: Mapping[str, str] | None = None) -> bytes:
-    """Return a PNG file of (H, W) or (H, W, 1 | 3) uint8 or uint16."""
+def encode_png(values: NDArray[Any], text: Mapping[str, str] | None = None, *, srgb: bool = True) -> bytes:
+    """Return a PNG file of (H, W) or (H, W, 1 | 2 | 3 | 4) uint8 or uint16, which says that it is in sRGB."""
     import imagecodecs
 
     plane = values[..., 0] if values.shape[2:] == (1,) else values
     png = bytes(imagecodecs.png_encode(np.ascontiguousarray(plane)))
-    return with_text(png, text) if text else png
+    png = with_text(png, text) if text else png
+    return with_chunk(png, b"sRGB", _SRGB) if srgb else png
 
 
 def _encode_tiff(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
@@ -148,14 +207,34 @@ def _encode_tiff(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
     tifffile.imwrite(
         out,
         values,
-        photometric="rgb" if values.ndim == 3 else "minisblack",
+        photometric="rgb" if values.shape[2:] in ((3,), (4,)) else "minisblack",
+        planarconfig="contig" if values.ndim == 3 else None,
+        extrasamples=("unassalpha",) if values.shape[2:] in ((2,), (4,)) else None,
         compression="zlib",
         predictor=values.dtype.kind == "u",
         metadata=None,
         software="TexLab",
-        description=next(iter(text.values())) if text else None,
+        description=_TIFF_PREFIX + next(iter(text.values())) if text else None,
     )
     return out.getvalue()
+
+
+def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str) -> bytes:
+    import imagecodecs
+
+    if text:
+        raise ValueError("A WebP file takes no text.")
+    if max(values.shape[:2]) > _MAX_WEBP_SIDE:
+        raise ImageError(
+            f"{name}: a WebP file has at most {_MAX_WEBP_SIDE} pixels in a side, got {values.shape[1]} x "
+            f"{values.shape[0]}."
+        )
+    planes = values.reshape(*values.shape[:2], -1)
+    colours = planes.shape[2] - 1 + planes.shape[2] % 2
+    # The format has no gray.
+    rgb = np.repeat(planes[..., :1], 3, axis=2) if colours == 1 else planes[..., :3]
+    whole = np.ascontiguousarray(np.concatenate([rgb, planes[..., colours:]], axis=2))
+    return bytes(imagecodecs.webp_encode(whole, lossless=True))
 
 
 def _encode_jpeg(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:

@@ -110,7 +110,10 @@ def _check_start(inputs: Inputs, size: tuple[int, int]) -> None:
     start, mask = _image(inputs, "start"), _image(inputs, "mask")
     exemplar = exemplar_of(inputs)
     if start is not None and start.channels == 3 and exemplar.channels == 1:
-        raise InputError("start: must be gray like the exemplar, got an image in colour.")
+        raise InputError(
+            f"The start image {start.name} is in colour, and the exemplar {exemplar.name} is gray; choose a gray "
+            "start image or an exemplar in colour."
+        )
     if start is None and mask is None:
         return
     image, name = (exemplar, "exemplar") if start is None else (start, "start image")
