@@ -9,7 +9,7 @@ from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
 from texlab.window.mime import source_of
-from texlab_core.images.formats.reading import READABLE_SUFFIXES
+from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 
 if TYPE_CHECKING:
     from texlab.runs.controller import Controller

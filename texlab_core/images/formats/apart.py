@@ -135,7 +135,7 @@ def child(job: dict[str, Any]) -> None:
     out = os.fdopen(os.dup(1), "wb")
     # What libraries print goes nowhere.
     os.dup2(2, 1)
-    from texlab_core.images.formats.reading import decode_open
+    from texlab_core.images.formats.kinds import decode_open
 
     try:
         with os.fdopen(os.dup(0), "rb") as file:
