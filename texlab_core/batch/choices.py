@@ -14,7 +14,7 @@ from texlab_core.engine.inputs import Crop
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.images.exemplar import as_exemplar, scaled_size
-from texlab_core.images.formats.reading import READABLE_SUFFIXES
+from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 from texlab_core.images.gallery import CLASSES, PREFIX, find_entry, gallery
 
 if TYPE_CHECKING:

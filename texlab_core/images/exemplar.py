@@ -43,8 +43,8 @@ def as_exemplar(
     Parameters
     ----------
     source
-        An array (H, W) or (H, W, 1 | 3 | 4), of any real type; an image input; the path or the bytes of a PNG, JPEG,
-        TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, Radiance HDR, PBM, PGM or PPM file; or
+        An array (H, W) or (H, W, 1 | 3 | 4), of any real type; an image input; the path or the bytes of a PNG,
+        JPEG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, Radiance HDR, PBM, PGM or PPM file; or
         "gallery:NAME".
     name
         For people and recipes; by default the file's name.
@@ -65,9 +65,7 @@ def as_exemplar(
     -------
     ImageInput
         (H, W, C) float32 in [0, 1], C-contiguous, read-only, at least 2 x 2 pixels; C is 3, or 1 for gray images,
-        stored in one channel or in three equal ones. Values are used as stored, that is, gamma-encoded; integers
-        are divided by their largest value. Floats from 0 to 1 are used as they are; others are read as 0 to 1,
-        0 to 255 or 0 to 65535 by their range, or else by percentiles (see :class:`UnitRange`), and a note says so.
+        stored in one channel or in three equal ones. Values are used as stored, that is, gamma-encoded.
 
     Raises
     ------
