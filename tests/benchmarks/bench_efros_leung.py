@@ -22,6 +22,7 @@ from texlab_core.images.exemplar import as_exemplar
 from texlab_core.kernels.jit import njit
 from texlab_core.methods.efros_leung.draft import draft
 from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.windows import Matching
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -133,7 +134,7 @@ def test_worst_waiting() -> None:
 def test_drafts() -> None:
     source = as_exemplar("gallery:structured-pebbles")
     for window in (5, 15, 41):
-        matching = EfrosLeungParams(window=window).matching()
+        matching = Matching(window=window)
         draft({"exemplar": source}, matching, (256, 256), 0)
         begin = time.thread_time()
         picture = draft({"exemplar": source}, matching, (256, 256), 0)

@@ -16,7 +16,7 @@ from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.efros_leung.method import EfrosLeungParams
-from texlab_core.methods.efros_leung.windows import integer_weights, offsets
+from texlab_core.methods.efros_leung.windows import FULL_SPREAD, effective_tau, integer_weights, offsets
 
 if TYPE_CHECKING:
     from texlab_core.engine.result import Result
@@ -47,7 +47,8 @@ def oracle_for(result: Result, known: np.ndarray, start: np.ndarray, **more: Any
     places = offsets(params.shape, params.window)
     weights = integer_weights(places, params.window, params.criterion, exemplar.shape[2])
     streams = Streams(result.job.seed)
-    limit = params.matching().limit
+    matching = params.matching(result.job.inputs["exemplar"])
+    limit = matching.limit
     return Oracle(
         exemplar=exemplar,
         image=start,
@@ -57,7 +58,7 @@ def oracle_for(result: Result, known: np.ndarray, start: np.ndarray, **more: Any
         window=params.window,
         criterion=params.criterion,
         eps=Fraction(round(params.eps * 10**6), 10**6),
-        tau=Fraction(round(params.tau * 1000), 1000),
+        tau=Fraction(round(matching.tau * 1000), 1000),
         limit=limit,
         periodic=params.border == "periodic",
         tiles=params.tiles and params.shape != "causal",
@@ -217,3 +218,36 @@ def test_any_setting(data: st.DataObject) -> None:
 def test_blocks_and_survivors_on_a_larger_exemplar() -> None:
     for levels, tau in ((256, 0.0), (256, 6.0), (3, 0.0)):
         check_grown(texture(44, 47, 1, levels=levels), (12, 13), window=9, tau=tau)
+
+
+def neighbour_correlation(pixels: np.ndarray) -> float:
+    plane = pixels[..., 0].astype(np.float64)
+    return float(np.corrcoef(plane[:, 1:].ravel(), plane[:, :-1].ravel())[0, 1])
+
+
+def test_a_relative_tau_follows_the_contrast() -> None:
+    """An exemplar whose values span 12 gray levels: texture, where an absolute tau of 3 makes noise of it."""
+    y, x = np.mgrid[:40, :40]
+    waves = np.sin(x / 3.1 + 0.7 * np.sin(y / 4.3)) + np.sin(y / 2.7)
+    values = np.float32(80 + 6 * waves / np.abs(waves).max())[..., None] / 255
+    job = {"method": "efros-leung", "inputs": {"exemplar": as_exemplar(values)}, "size": (32, 32)}
+    relative, absolute = (
+        run(Job(**job, params=EfrosLeungParams(window=9, tau_scale=scale))).image
+        for scale in ("relative", "absolute")
+    )
+    own = neighbour_correlation(values)
+    assert own > 0.9
+    assert neighbour_correlation(relative) > 0.95 * own
+    assert neighbour_correlation(absolute) < 0.5 * own
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize("spread", [0.0, 1.0, 10.0, 40.0, 90.0])
+def test_effective_tau(spread: float, channels: int) -> None:
+    signs = np.where(np.arange(64 * channels).reshape(8, 8, channels) // channels % 2 == 0, 1.0, -1.0)
+    pixels = np.float32(0.5 + signs * spread / 255)
+    expected = 3 * min(1, spread / FULL_SPREAD)
+    for criterion in ("ssd", "flat-ssd", "sad"):
+        assert effective_tau(3.0, "relative", criterion, pixels) == pytest.approx(expected, rel=1e-5)
+        assert effective_tau(3.0, "absolute", criterion, pixels) == 3.0
+    assert effective_tau(3.0, "relative", "ncc", pixels) == 3.0

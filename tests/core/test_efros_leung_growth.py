@@ -18,7 +18,7 @@ from texlab_core.methods.efros_leung import growth as growth_module
 from texlab_core.methods.efros_leung.draft import draft
 from texlab_core.methods.efros_leung.explain import explain
 from texlab_core.methods.efros_leung.method import EfrosLeungParams
-from texlab_core.methods.efros_leung.windows import LARGEST_SUM, integer_weights, offsets
+from texlab_core.methods.efros_leung.windows import LARGEST_SUM, Matching, integer_weights, offsets
 
 if TYPE_CHECKING:
     from texlab_core.engine.result import Result
@@ -232,13 +232,13 @@ def test_verbatim_copies_are_measured() -> None:
 def test_drafts_are_quick_and_made_of_the_exemplar(channels: int) -> None:
     exemplar = texture(30, 31, channels)
     inputs = {"exemplar": image(exemplar)}
-    matching = EfrosLeungParams(window=9).matching()
+    matching = Matching(window=9)
     one, other = (draft(inputs, matching, (40, 30), 3, seconds=60) for _ in range(2))
     np.testing.assert_array_equal(one, other)
     assert one.shape == (40, 30, channels)
     colours = {tuple(pixel) for pixel in exemplar.reshape(-1, channels)}
     assert {tuple(pixel) for pixel in np.rint(one * 255).astype(np.uint8).reshape(-1, channels)} <= colours
-    large = draft(inputs, EfrosLeungParams(window=29).matching(), (2000, 1000), 3, seconds=60)
+    large = draft(inputs, Matching(window=29), (2000, 1000), 3, seconds=60)
     height, width, _ = large.shape
     assert 1.8 < height / width < 2.2
     assert height < 400

@@ -17,7 +17,7 @@ from texlab_core.measures.subject import Subject
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.method import HeegerBergenParams
 from texlab_core.transforms import fourier
-from texlab_core.work.tasks import crew
+from texlab_core.work.tasks import crew, finish
 
 
 def texture(shape=(48, 64), channels=1, seed=0):
@@ -81,6 +81,26 @@ def test_equal_channels_give_equal_channels():
     gray = texture((32, 32))
     result = make(np.repeat(gray, 3, axis=2))
     assert np.all(result.image == result.image[..., :1])
+
+
+def test_matching_the_channels_is_a_choice():
+    """Without it the result is what the colour axes make of their planes: the axes' values are the exemplar's."""
+    image = texture((40, 48), 3)
+    matched, left = make(image), make(image, rgb_matching=False)
+    assert (matched.image != left.image).any()
+    pixels = as_exemplar(image).pixels
+    inside = ((left.image > 0) & (left.image < 1)).all(-1)
+    assert inside.mean() > 0.9
+    planes = finish(left.model.axes.to_axes_task(left.image))
+    for plane, target in zip(planes, left.model.planes, strict=True):
+        # Every pixel that was not clipped has a value of the exemplar on every axis.
+        values = np.sort(target.pixels.sample)
+        near = np.abs(values[np.searchsorted(values, plane[inside]).clip(1, values.size - 1)] - plane[inside])
+        below = np.abs(values[np.searchsorted(values, plane[inside]).clip(1, values.size - 1) - 1] - plane[inside])
+        assert np.minimum(near, below).max() < 1e-4
+    assert not np.array_equal(np.sort(left.image[..., 0], axis=None), np.sort(pixels[..., 0], axis=None))
+    gray = texture((40, 48))
+    np.testing.assert_array_equal(make(gray).image, make(gray, rgb_matching=False).image)
 
 
 def test_colours_on_a_line_stay_on_the_line():

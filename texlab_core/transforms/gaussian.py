@@ -1,13 +1,16 @@
 """Gaussian pyramid: reduce and expand with the 5-tap binomial filter.
 
 The sample (i, j) of a coarse level lies on the sample (2i, 2j) of the finer one. Both operations see the image go
-on beyond its border in one of two ways:
+on beyond its border in one of three ways:
 
 ``reflect``
     Mirrored about the centre of the outermost pixel, without repeating it (d c b | a b c d | c b a), so that the
     mirror of a level is the mirror of the level below it.
 ``periodic``
     Repeated; with sides that halve evenly the pyramid then commutes with circular shifts.
+``spread``
+    Repeated, and at an odd side N the ceil(N / 2) coarse samples lie evenly around it, N / ceil(N / 2) apart, with
+    the filter stretched to fit, so that no place is a seam. At even sides the same as ``periodic``.
 
 A constant image stays constant in both directions, at the borders too.
 
@@ -20,6 +23,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar, get_args
 
 import numpy as np
 
+from texlab_core.transforms import spread
 from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
@@ -27,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-Border = Literal["reflect", "periodic"]
+Border = Literal["reflect", "periodic", "spread"]
 Expansion = Literal["interpolate", "replicate"]
 FloatT = TypeVar("FloatT", np.float32, np.float64)
 
@@ -52,6 +56,8 @@ def reduce(image: NDArray[FloatT], border: Border = "reflect") -> NDArray[FloatT
     import cv2
 
     _check(image, border)
+    if border == "spread" and (image.shape[0] % 2 or image.shape[1] % 2):
+        return spread.reduce(image)
     kind = cv2.BORDER_REFLECT_101 if border == "reflect" else cv2.BORDER_WRAP
     height, width = image.shape[:2]
     small = cv2.pyrDown(np.ascontiguousarray(image), borderType=kind)
@@ -97,6 +103,8 @@ def expand(
     height, width = int(shape[0]), int(shape[1])
     if image.shape[:2] != (-(-height // 2), -(-width // 2)):
         raise ValueError(f"expand: an image of {image.shape[:2]} cannot become one of {(height, width)}.")
+    if border == "spread" and (height % 2 or width % 2):
+        return spread.expand(image, (height, width), mode)
     if mode == "replicate":
         return image.repeat(2, axis=0)[:height].repeat(2, axis=1)[:, :width]
     if mode != "interpolate":
@@ -132,7 +140,7 @@ def build(
 def _surround(fine: int, border: Border) -> list[int]:
     """Return the coarse samples that make a side of length ``fine``, with one more at each end."""
     coarse = -(-fine // 2)
-    if border == "periodic":
+    if border != "reflect":
         return [coarse - 1, *range(coarse), 0]
     # Mirroring the fine samples about 2m - 1 (even side) repeats the last coarse one; about 2m - 2 it does not.
     last = coarse - 1 if fine % 2 == 0 else max(coarse - 2, 0)

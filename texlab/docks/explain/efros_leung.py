@@ -128,7 +128,7 @@ def summary(explained: ExplainedPixel) -> str:
         return words[0]
     words[0] += f" at d = {number(found.chosen_distance)} {unit}".rstrip() + "."
     widened = (1 + matching.eps) * found.d_min
-    rule = f"(1 + {matching.eps:g}) · d_min" if widened >= found.limit else f"tau = {matching.tau:g}"
+    rule = f"(1 + {matching.eps:g}) · d_min" if widened >= found.limit else f"tau = {matching.tau:.3g}"
     choice = "The only place" if count == 1 else f"One of {count:,} places"
     words.append(
         f"{choice} up to the limit {number(found.limit)}, which comes from {rule}; d_min = {number(found.d_min)}."

@@ -11,7 +11,15 @@ from texlab_core.engine.registry import EXEMPLAR, InputSpec, Method, register
 from texlab_core.engine.steps import Step
 from texlab_core.methods.efros_leung.fill import Anchor
 from texlab_core.methods.efros_leung.told import DISTANCE, EXACT_SHARE, GARBAGE, OWN_DISTANCE
-from texlab_core.methods.efros_leung.windows import Border, Criterion, Matching, Shape
+from texlab_core.methods.efros_leung.windows import (
+    FULL_SPREAD,
+    Border,
+    Criterion,
+    Matching,
+    Shape,
+    TauScale,
+    effective_tau,
+)
 from texlab_core.work.tasks import relay, through
 
 if TYPE_CHECKING:
@@ -20,7 +28,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.inputs import ImageInput, Inputs
     from texlab_core.engine.steps import FloatImage, Output
     from texlab_core.engine.steps import Step as AnyStep
     from texlab_core.engine.streams import Streams
@@ -100,6 +108,20 @@ class EfrosLeungParams(Params):
             group="Match set",
         ),
     ] = 3.0
+    tau_scale: Annotated[
+        TauScale,
+        Knob(
+            help="What the gray levels of tau are.",
+            choices={
+                "relative": "fewer for an exemplar of little contrast: in proportion to its spread, in full "
+                f"from a standard deviation of {FULL_SPREAD:g} gray levels",
+                "absolute": "those of the image, whatever its contrast",
+            },
+            when=("criterion", ("ssd", "flat-ssd", "sad")),
+            formerly="absolute",
+            group="Match set",
+        ),
+    ] = "relative"
     error_limit: Annotated[
         float,
         Knob(
@@ -160,14 +182,14 @@ class EfrosLeungParams(Params):
         ),
     ] = "center"
 
-    def matching(self) -> Matching:
-        """Return what decides which candidates match."""
+    def matching(self, exemplar: ImageInput) -> Matching:
+        """Return what decides which candidates of an exemplar match."""
         return Matching(
             window=self.window,
             shape=self.shape,
             criterion=self.criterion,
             eps=self.eps,
-            tau=self.tau,
+            tau=effective_tau(self.tau, self.tau_scale, self.criterion, exemplar.pixels),
             error_limit=self.error_limit,
             border=self.border,
             tiles=self.tiles,
@@ -186,7 +208,7 @@ def check(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int]) -> No
     """Refuse what cannot work; see :func:`texlab_core.methods.efros_leung.fill.check_inputs`."""
     from texlab_core.methods.efros_leung.fill import check_inputs
 
-    check_inputs(inputs, params.matching(), size)
+    check_inputs(inputs, params.matching(exemplar_of(inputs)), size)
 
 
 def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None, EfrosLeungModel]:
@@ -195,7 +217,7 @@ def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None
     from texlab_core.methods.efros_leung.fill import allowed_centres
     from texlab_core.methods.efros_leung.level import leave_one_out
 
-    matching = params.matching()
+    matching = params.matching(exemplar_of(inputs))
     values = to_bytes(exemplar_of(inputs).pixels)
     allowed = allowed_centres(inputs, matching)
     pool = make_pool(values, allowed, matching)
@@ -212,7 +234,7 @@ def synthesize(
     from texlab_core.methods.efros_leung.explain import Grown
     from texlab_core.methods.efros_leung.fill import begin, full_state, make_growth, settings_digest
 
-    matching = params.matching()
+    matching = params.matching(exemplar_of(inputs))
     exemplar = exemplar_of(inputs)
     laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
     beginning = yield from through(laying, Step(0, size[0] * size[1], "laying out what is known"))
@@ -234,7 +256,14 @@ def draft(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], seed:
     """Show roughly and at once what the parameters do; see :mod:`texlab_core.methods.efros_leung.draft`."""
     from texlab_core.methods.efros_leung.draft import draft
 
-    return draft(inputs, params.matching(), size, seed, seed_patch=params.seed_patch, anchor=params.anchor)
+    return draft(
+        inputs,
+        params.matching(exemplar_of(inputs)),
+        size,
+        seed,
+        seed_patch=params.seed_patch,
+        anchor=params.anchor,
+    )
 
 
 register(

@@ -15,9 +15,14 @@ if TYPE_CHECKING:
 Shape = Literal["square", "disc", "cross", "causal"]
 Criterion = Literal["ssd", "flat-ssd", "sad", "ncc"]
 Border = Literal["inside", "periodic"]
+TauScale = Literal["relative", "absolute"]
 
 # sum of weights x channels x 255^2 stays below 2^31: every distance is exact in 32 bits.
 LARGEST_SUM = (2**31 - 1) // 255**2
+# Standard deviation in gray levels from which a relative tau counts in full: that of a usual texture.
+FULL_SPREAD = 40.0
+# Pixels of an exemplar whose spread is taken.
+_SAMPLED = 2**20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +82,29 @@ def in_distance_units(level: float, criterion: Criterion) -> float:
     if criterion == "sad":
         return level
     return (level / 255.0) ** 2 if criterion == "ncc" else level**2
+
+
+def effective_tau(tau: float, scale: TauScale, criterion: Criterion, pixels: NDArray[np.float32]) -> float:
+    """Return tau in gray levels of an exemplar.
+
+    Parameters
+    ----------
+    tau
+        As the user has it, in gray levels.
+    scale
+        ``relative``: in full where the exemplar's values spread by at least 40 gray levels (standard deviation,
+        root mean square over the channels), in proportion below; ``absolute``: in full.
+    criterion
+        Correlation knows no contrast, so that its tau is the same for all exemplars.
+    pixels
+        (H, W, C) float32 in [0, 1].
+    """
+    if scale == "absolute" or criterion == "ncc":
+        return tau
+    samples = pixels.reshape(-1, pixels.shape[2])
+    samples = samples[:: max(1, len(samples) // _SAMPLED)]
+    spread = 255 * float(np.sqrt(samples.var(axis=0, dtype=np.float64).mean()))
+    return tau * min(1.0, spread / FULL_SPREAD)
 
 
 def offsets(shape: Shape, window: int) -> NDArray[np.int64]:

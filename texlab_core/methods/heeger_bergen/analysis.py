@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 Plane = NDArray[np.float32]
 Pyramid = Literal["steerable", "laplacian", "textbook"]
+OddSides = Literal["spread", "doubled"]
+Around = Literal["spread", "periodic"]
 Border = Literal["reflect", "periodic", "wrap"]
 
 # A band this much weaker than its plane is measured against the plane: rounding has no distribution to match.
@@ -117,8 +119,19 @@ def expansion(pyramid: Pyramid) -> gaussian.Expansion:
     return "replicate" if pyramid == "textbook" else "interpolate"
 
 
+def around(odd_sides: OddSides) -> Around:
+    """Return the border rule of a Laplacian pyramid that wraps around."""
+    return "spread" if odd_sides == "spread" else "periodic"
+
+
 def analyze(
-    image: FloatImage, pyramid: Pyramid, scales: int, orientations: int, border: Border, team: Crew
+    image: FloatImage,
+    pyramid: Pyramid,
+    scales: int,
+    orientations: int,
+    border: Border,
+    team: Crew,
+    odd_sides: OddSides = "spread",
 ) -> Task[TextureModel]:
     """Analyze an exemplar.
 
@@ -130,6 +143,8 @@ def analyze(
         As in the method's parameters; fewer scales are used when the image is too small.
     team
         Works on the subbands side by side.
+    odd_sides
+        How a Laplacian pyramid wraps around at odd sides.
 
     Returns
     -------
@@ -151,7 +166,14 @@ def analyze(
         if pyramid == "steerable":
             yield from _steerable_targets(whole, levels, orientations, border == "reflect", floor, bands, team)
         else:
-            yield from _laplacian_targets(whole, levels, border, expansion(pyramid), floor, bands)
+            yield from _laplacian_targets(
+                whole,
+                levels,
+                "reflect" if border == "reflect" else around(odd_sides),
+                expansion(pyramid),
+                floor,
+                bands,
+            )
         models.append(PlaneModel(pixels, bands))
     return TextureModel(axes, tuple(models), tuple(palette), levels)
 
@@ -206,14 +228,14 @@ def _steerable_targets(
 def _laplacian_targets(
     plane: Plane,
     levels: int,
-    border: Border,
+    border: gaussian.Border,
     mode: gaussian.Expansion,
     floor: float,
     bands: dict[BandKey, Target],
 ) -> Task[None]:
     for level in range(levels):
         bands[BandKey("lowpass", level)] = yield from target(plane, floor)
-        band, coarser = laplacian.build(plane, 1, "reflect" if border == "reflect" else "periodic", mode)
+        band, coarser = laplacian.build(plane, 1, border, mode)
         yield plane.size
         bands[BandKey("bandpass", level)] = yield from target(band, floor)
         plane = coarser

@@ -70,12 +70,22 @@ class HeegerBergenParams(Params):
             source="Heeger and Bergen 1995, section 2.2",
         ),
     ] = "exact"
+    rgb_matching: Annotated[
+        bool,
+        Knob(
+            help="Match the histograms of red, green and blue once the colour axes are put together.",
+            label="rgb matching",
+            when=("palette", ("off",)),
+            formerly=True,
+            group="Colour",
+        ),
+    ] = True
     palette: Annotated[
         Literal["off", "transport"],
         Knob(
             help="Colours that the exemplar does not have appear because its axes are matched one by one.",
             choices={
-                "off": "leave them; only the histograms of red, green and blue are matched at the end",
+                "off": "leave them; at most the histograms of red, green and blue are matched at the end",
                 "transport": "move all colours onto the exemplar's palette at the end (sliced optimal transport)",
             },
             group="Colour",
@@ -128,6 +138,20 @@ class HeegerBergenParams(Params):
             when=("pyramid", ("steerable",)),
         ),
     ] = 4
+    odd_sides: Annotated[
+        Literal["spread", "doubled"],
+        Knob(
+            help="How a Laplacian pyramid halves an odd side of an image that wraps around.",
+            choices={
+                "spread": "coarse samples lie evenly around it, so that the result tiles at any size",
+                "doubled": "as if its last sample were there twice: a seam shows",
+            },
+            stage="analysis",
+            when=("pyramid", ("laplacian", "textbook")),
+            formerly="doubled",
+            group="Pyramid",
+        ),
+    ] = "spread"
     border: Annotated[
         Literal["reflect", "periodic", "wrap"],
         Knob(
@@ -168,7 +192,9 @@ def analyze(inputs: Inputs, params: HeegerBergenParams) -> Generator[Step, None,
     """Sort the pixels and the subbands of every colour axis."""
     image = exemplar_of(inputs).pixels
     with crew() as team:
-        work = analysis.analyze(image, params.pyramid, params.scales, params.orientations, params.border, team)
+        work = analysis.analyze(
+            image, params.pyramid, params.scales, params.orientations, params.border, team, params.odd_sides
+        )
         total, done = image.size * 6, 0
         if params.pyramid == "steerable":
             # Every band is computed, on the mirrored plane, and sorted.
@@ -214,7 +240,8 @@ class _Run:
         self.model, self.inputs, self.params, self.size = model, inputs, params, size
         self.streams, self.team = streams, team
         levels = min(model.levels, analysis.max_levels(size, params.pyramid))
-        self.plan = Plan(params.pyramid, levels, params.orientations, params.matching)
+        around = analysis.around(params.odd_sides)
+        self.plan = Plan(params.pyramid, levels, params.orientations, params.matching, around)
         self.keys = self.plan.keys
         self.planes: list[NDArray[np.float32]] = []
         self.image: FloatImage | None = None
@@ -284,6 +311,8 @@ class _Run:
             exemplar = exemplar_of(self.inputs).pixels
             moving = transport_palette(image, exemplar, self.params.palette_rounds, self.streams)
             return (yield from self._steps(moving, "palette"))
+        if not self.params.rgb_matching:
+            return image
         channels = np.ascontiguousarray(np.moveaxis(image, -1, 0))
         for channel, (plane, sample) in enumerate(zip(channels, self.model.palette, strict=True)):
             key = self.streams.key("channel", channel)

@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from texlab_core.methods.heeger_bergen.analysis import PlaneModel, Pyramid, Target, band_keys, expansion
+from texlab_core.methods.heeger_bergen.analysis import (
+    Around,
+    PlaneModel,
+    Pyramid,
+    Target,
+    band_keys,
+    expansion,
+)
 from texlab_core.stats import histogram
 from texlab_core.transforms import fourier, laplacian
 from texlab_core.transforms.filters import level_size
@@ -36,12 +43,13 @@ BATCH = 2**15
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The pyramid of a synthesis and how its subbands are matched."""
+    """The pyramid of a synthesis, how its subbands are matched, and how a Laplacian one wraps around."""
 
     pyramid: Pyramid
     levels: int
     orientations: int
     matching: Matching = "exact"
+    around: Around = "spread"
 
     @property
     def keys(self) -> tuple[BandKey, ...]:
@@ -200,11 +208,11 @@ def _laplacian_round(
         return ()
 
     yield from team.in_order(tasks, accept)
-    collapsed = laplacian.collapse(bands, "periodic", expansion(plan.pyramid))
+    collapsed = laplacian.collapse(bands, plan.around, expansion(plan.pyramid))
     yield plane.size
     return np.ascontiguousarray(collapsed), np.array(distances)
 
 
 def _laplacian_bands(plane: Plane, plan: Plan) -> list[Plane]:
-    bands = laplacian.build(plane, plan.levels, "periodic", expansion(plan.pyramid))
+    bands = laplacian.build(plane, plan.levels, plan.around, expansion(plan.pyramid))
     return [np.ascontiguousarray(band) for band in bands[:-1]] + [bands[-1].copy()]
