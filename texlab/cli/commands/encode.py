@@ -28,6 +28,12 @@ def configure(parser: Parser) -> None:
         default="participation",
         help="how bandwidths are measured (default participation)",
     )
+    parser.add_argument(
+        "--axes",
+        choices=("uv", "radial"),
+        default="uv",
+        help="along which axes: of the frequency plane (default uv), or along and across the waves",
+    )
     add_scale_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -45,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.work.tasks import finish
 
     exemplar = reading.read(args.image)
-    code, _ = finish(encode(exemplar.pixels, args.bandwidths))
+    code, _ = finish(encode(exemplar.pixels, args.bandwidths, args.axes))
     write_code(code, out, exemplar.name)
     if args.json:
         answer = {"out": str(out), "numbers": code.parameters, "code": code_to_json(code, exemplar.name)}

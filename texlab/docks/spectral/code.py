@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
-    from texlab_core.methods.spectral.choices import BandwidthMeasure
+    from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure
     from texlab_core.methods.spectral.code import MsgCode
 
 EDITED = "edited code"
@@ -76,6 +76,12 @@ HEADINGS: dict[Group, str] = {
     "v": "Bandwidths v, % of filter",
     "residual": "Residual",
     "histogram": "Histogram",
+}
+
+# Where the bandwidths belong to the waves of each channel.
+RADIAL: dict[Group, str] = HEADINGS | {
+    "u": "Radial bandwidths, % of filter",
+    "v": "Angular bandwidths, % of filter",
 }
 
 
@@ -107,12 +113,12 @@ class CodeAnswer:
     reached: Any
 
 
-def encoded(image: FloatImage, measure: BandwidthMeasure) -> MsgCode:
+def encoded(image: FloatImage, measure: BandwidthMeasure, axes: BandwidthAxes) -> MsgCode:
     """Return the code of an image, (H, W, C) float32."""
     from texlab_core.methods.spectral.encoding import encode
     from texlab_core.work.threads import use_workers
 
-    steps = encode(image, measure)
+    steps = encode(image, measure, axes)
     with use_workers(1):
         while True:
             try:
@@ -165,6 +171,7 @@ class CodeDock(FramedDock):
         self.state = Label("")
         self.add_control(self.state, "state", "What the column is made from", "What the column is made from")
         self.readout = self.add_readout()
+        self._headings: dict[Group, Label] = {}
         self.grids: dict[Group, CodeGrid] = {}
         inside = QWidget()
         row = QHBoxLayout(inside)
@@ -194,7 +201,7 @@ class CodeDock(FramedDock):
         column = QVBoxLayout(part)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(1)
-        heading = Label(HEADINGS[group])
+        self._headings[group] = heading = Label(HEADINGS[group])
         set_tip(heading, TIPS[group])
         column.addWidget(heading)
         column.addWidget(view, 1)
@@ -243,18 +250,19 @@ class CodeDock(FramedDock):
         self._exemplar_name = scene.exemplar.name
         exemplar, image = scene.exemplar.pixels, shown_image(column)
         measure: BandwidthMeasure = getattr(column.params, "bandwidths", "participation")
+        axes: BandwidthAxes = getattr(column.params, "bandwidth_axes", "uv")
         column_id, recent = column.id, self._recent
 
         def compute(should_stop: Callable[[], bool]) -> CodeAnswer:
             from texlab_core.methods.spectral.codefile import code_from_json
 
-            measured = recent.get((Same(exemplar), measure), lambda: encoded(exemplar, measure))
+            measured = recent.get((Same(exemplar), measure, axes), lambda: encoded(exemplar, measure, axes))
             code = measured if given is None else code_from_json(given.data).code
-            reached = None if image is None else values(encoded(image, measure), "energy")
+            reached = None if image is None else values(encoded(image, measure, "uv"), "energy")
             name = "" if given is None else given.name
             return CodeAnswer(column_id, code, measured, "" if given is None else given.sha256, name, reached)
 
-        return Question((self.name, Same(exemplar), measure, column_id, self._key, Same(image)), compute)
+        return Question((self.name, Same(exemplar), measure, axes, column_id, self._key, Same(image)), compute)
 
     # Showing.
 
@@ -276,6 +284,8 @@ class CodeDock(FramedDock):
             return
         for group, grid in self.grids.items():
             self._show_group(grid, group, code)
+        for group, words in (RADIAL if code.axes == "radial" else HEADINGS).items():
+            self._headings[group].setText(words)
         same_kind = self._measured is not None and self._measured.tone.histogram.kind == code.tone.histogram.kind
         measured = values(self._measured, "histogram") if self._measured is not None and same_kind else None
         self.bars.show_bars(values(code, "histogram"), measured)

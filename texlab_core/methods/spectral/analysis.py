@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.progress import Progress
     from texlab_core.engine.steps import Step
-    from texlab_core.methods.spectral.choices import BandwidthMeasure
+    from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure
     from texlab_core.methods.spectral.tone import Tone
 
 
@@ -59,11 +59,14 @@ class Marginals:
         return equivalent_bandwidths(self.u, measure), equivalent_bandwidths(self.v, measure)
 
 
-def equivalent_bandwidths(marginals: Floats, measure: BandwidthMeasure) -> Floats:
+def equivalent_bandwidths(
+    marginals: Floats, measure: BandwidthMeasure, step: float | None = None, white: Floats = WHITE_BANDWIDTHS
+) -> Floats:
     """Return the equivalent bandwidth of each marginal spectrum (16, n), in cycles per pixel.
 
     ``paper`` is the sum over the maximum (eq. 4); ``participation`` is (sum P)^2 / (sqrt(2) sum P^2), equal for a
-    Gaussian but not biased by a noisy maximum. Channels without power get the bandwidths of white noise.
+    Gaussian but not biased by a noisy maximum. Channels without power get the bandwidths of white noise,
+    ``white``. Samples are ``step`` apart, 1 / n where nothing is said.
     """
     total = marginals.sum(axis=1)
     empty = total <= 0
@@ -74,11 +77,17 @@ def equivalent_bandwidths(marginals: Floats, measure: BandwidthMeasure) -> Float
         # Scaled first, so that squares of very small powers do not vanish.
         safe = safe / safe.max(axis=1, keepdims=True)
         widths = safe.sum(axis=1) ** 2 / (math.sqrt(2) * np.square(safe).sum(axis=1))
-    return np.asarray(np.where(empty, WHITE_BANDWIDTHS, widths / marginals.shape[1]))
+    return np.asarray(np.where(empty, white, widths / marginals.shape[1] if step is None else widths * step))
 
 
 def analyze_plane(
-    plane: Plane, tone: Tone, measure: BandwidthMeasure, progress: Progress, transform: str, features: str
+    plane: Plane,
+    tone: Tone,
+    measure: BandwidthMeasure,
+    progress: Progress,
+    transform: str,
+    features: str,
+    axes: BandwidthAxes = "uv",
 ) -> Generator[Step, None, MsgCode]:
     """Return the code of a gray plane.
 
@@ -90,13 +99,20 @@ def analyze_plane(
         Its histogram and colours.
     transform, features
         Names of the two stages.
+    axes
+        Along which axes bandwidths are measured.
     """
     mean = float(plane.mean(dtype=np.float64))
     half = yield from forward(plane - np.float32(mean), progress, transform)
     marginals = yield from channel_marginals(half, plane.shape[1], progress, features)
-    u, v = marginals.bandwidths(measure)
+    if axes == "radial":
+        from texlab_core.methods.spectral.radial import radial_bandwidths
+
+        u, v = yield from progress.follow(radial_bandwidths(half, plane.shape[1], marginals, measure), features)
+    else:
+        u, v = marginals.bandwidths(measure)
     residual = residual_zones(half, plane.shape[1], mean)
-    return MsgCode(channels(marginals.energies()), channels(u), channels(v), measure, residual, tone)
+    return MsgCode(channels(marginals.energies()), channels(u), channels(v), measure, residual, tone, axes)
 
 
 def channel_marginals(half: Half, width: int, progress: Progress, stage: str) -> Generator[Step, None, Marginals]:

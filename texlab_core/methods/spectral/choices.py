@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 BandwidthMeasure = Literal["participation", "paper"]
+BandwidthAxes = Literal["uv", "radial"]
 Equations = Literal["corrected", "printed"]
 PhaseChoice = Literal["one", "sixteen"]
 HistogramChoice = Literal["coded", "full"]

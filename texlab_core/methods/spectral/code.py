@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self, TypeAlias, get_args
 
 import numpy as np
 
-from texlab_core.methods.spectral.choices import BandwidthMeasure
+from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure
 from texlab_core.methods.spectral.digits import keep_digits
 from texlab_core.transforms.gabor_bank import CHANNELS, OCTAVES, ORIENTATIONS, WHITE_BANDWIDTHS, WIDTHS
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from texlab_core.methods.spectral.tone import Tone
 
 BANDWIDTH_MEASURES = get_args(BandwidthMeasure)
+BANDWIDTH_AXES = get_args(BandwidthAxes)
 
 # 16 numbers, channel n = 4 p + q.
 Channels: TypeAlias = tuple[float, ...]
@@ -60,13 +61,16 @@ class MsgCode:
         Mean square of each Gabor channel, in squared gray levels; rows of 4 orientations (0, 45, 90, 135 degrees),
         lowest frequency first.
     bandwidths_u, bandwidths_v
-        Equivalent bandwidths of each channel along both axes, in cycles per pixel (eq. 4).
+        Equivalent bandwidths of each channel along both axes, in cycles per pixel (eq. 4); where ``axes`` is
+        ``radial``, along and across the direction of its waves.
     measure
         How the bandwidths were measured.
     residual
         The low-pass residual.
     tone
         The histogram, and the colours if there are any.
+    axes
+        Which axes the bandwidths belong to.
     """
 
     energies: Channels
@@ -75,6 +79,7 @@ class MsgCode:
     measure: BandwidthMeasure
     residual: Residual
     tone: Tone
+    axes: BandwidthAxes = "uv"
 
     @property
     def parameters(self) -> int:

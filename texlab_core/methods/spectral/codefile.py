@@ -14,7 +14,7 @@ from texlab_core.engine.inputs import DataInput
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.whole import write_whole
-from texlab_core.methods.spectral.code import BANDWIDTH_MEASURES, MsgCode, Residual
+from texlab_core.methods.spectral.code import BANDWIDTH_AXES, BANDWIDTH_MEASURES, MsgCode, Residual
 from texlab_core.methods.spectral.marginal import HISTOGRAM_KINDS, SAMPLES, Histogram16
 from texlab_core.methods.spectral.tone import Colours, Tone, Vector
 from texlab_core.transforms.gabor_bank import CHANNELS, OCTAVES, ORIENTATIONS
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping, Sequence
 
-    from texlab_core.methods.spectral.choices import BandwidthMeasure, HistogramKind
+    from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure, HistogramKind
 
 FORMAT = "texlab-msg"
 VERSION = 1
@@ -37,13 +37,14 @@ _KEYS = (
     "exemplar",
     "energies",
     "bandwidth_measure",
+    "bandwidth_axes",
     "bandwidths_u",
     "bandwidths_v",
     "residual",
     "histogram",
     "colours",
 )
-_OPTIONAL = ("exemplar", "colours")
+_OPTIONAL = ("exemplar", "bandwidth_axes", "colours")
 _RESIDUAL = ("mean", "u_axis", "v_axis", "falling", "rising")
 WordT = TypeVar("WordT", bound=str)
 
@@ -68,6 +69,8 @@ def code_to_json(code: MsgCode, exemplar: str = "") -> dict[str, Any]:
     data |= {
         "energies": _table(code.energies),
         "bandwidth_measure": code.measure,
+        # Left out where they are the paper's: such codes are as they always were.
+        **({"bandwidth_axes": code.axes} if code.axes != "uv" else {}),
         "bandwidths_u": _table(code.bandwidths_u),
         "bandwidths_v": _table(code.bandwidths_v),
         "residual": {key: getattr(code.residual, key) for key in _RESIDUAL},
@@ -133,6 +136,7 @@ def _from_json(given: object) -> CodeFile:
     if not isinstance(exemplar, str) or len(exemplar) > MAX_NAME or not (exemplar.isprintable()):
         _refuse("exemplar", f"at most {MAX_NAME} printable characters", exemplar)
     measure = _word("bandwidth_measure", data["bandwidth_measure"], BANDWIDTH_MEASURES)
+    axes = _word("bandwidth_axes", data.get("bandwidth_axes", "uv"), BANDWIDTH_AXES)
     residual = _object("residual", data["residual"], _RESIDUAL)
     limits = [(0.0, 255.0 if key == "mean" else _MAX_MODULUS) for key in _RESIDUAL]
     code = MsgCode(
@@ -147,6 +151,7 @@ def _from_json(given: object) -> CodeFile:
             )
         ),
         tone=Tone(_histogram(data["histogram"]), _colours(data.get("colours"))),
+        axes=cast("BandwidthAxes", axes),
     )
     return CodeFile(code, exemplar)
 

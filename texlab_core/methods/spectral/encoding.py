@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.steps import FloatImage, Step
-    from texlab_core.methods.spectral.choices import BandwidthMeasure, HistogramChoice
+    from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure, HistogramChoice
     from texlab_core.methods.spectral.code import MsgCode
     from texlab_core.methods.spectral.fourier import Floats, Plane
     from texlab_core.methods.spectral.tone import Tone
@@ -72,7 +72,7 @@ class Finish:
 
 
 def encode(
-    pixels: FloatImage, measure: BandwidthMeasure = "participation"
+    pixels: FloatImage, measure: BandwidthMeasure = "participation", axes: BandwidthAxes = "uv"
 ) -> Generator[Step, None, tuple[MsgCode, Floats]]:
     """Return the MSG code of an image and its uncoded histogram.
 
@@ -82,11 +82,13 @@ def encode(
         (H, W, C) float32 in [0, 1]; C is 1 or 3.
     measure
         How the bandwidths are measured.
+    axes
+        Along which axes they are: those of the frequency plane, or along and across the waves of each channel.
     """
     from texlab_core.methods.spectral.analysis import analyze_plane
     from texlab_core.methods.spectral.tone import split_tone
 
     progress = Progress({"colours and histogram": 1, "transform": 2, "features": 1})
     plane, tone, masses = yield from split_tone(pixels, progress, "colours and histogram")
-    code = yield from analyze_plane(plane, tone, measure, progress, "transform", "features")
+    code = yield from analyze_plane(plane, tone, measure, progress, "transform", "features", axes)
     return code, masses

@@ -11,7 +11,13 @@ from texlab_core.engine.progress import Progress
 from texlab_core.engine.registry import InputSpec, Method, register
 from texlab_core.engine.steps import Output
 from texlab_core.errors import InputError, ParamError
-from texlab_core.methods.spectral.choices import BandwidthMeasure, Equations, HistogramChoice, PhaseChoice
+from texlab_core.methods.spectral.choices import (
+    BandwidthAxes,
+    BandwidthMeasure,
+    Equations,
+    HistogramChoice,
+    PhaseChoice,
+)
 from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish, encode
 from texlab_core.methods.spectral.told import ENERGY_ERROR, PARAMETERS
 
@@ -43,6 +49,19 @@ class MsgParams(Params):
             group="Analysis",
         ),
     ] = "participation"
+    bandwidth_axes: Annotated[
+        BandwidthAxes,
+        Knob(
+            "Along which axes bandwidths are measured (of an exemplar; a code has its own).",
+            choices={
+                "uv": "horizontal and vertical frequency, as in the paper",
+                "radial": "along and across the waves of each channel, as its footnote suggests",
+            },
+            stage="analysis",
+            source="Navarro & Portilla 1996, section 3.1.2, footnote",
+            group="Analysis",
+        ),
+    ] = "uv"
     phase: Annotated[
         PhaseChoice,
         Knob(
@@ -108,9 +127,13 @@ def check(inputs: Inputs, params: MsgParams, size: tuple[int, int]) -> None:
     if isinstance(given, DataInput):
         from texlab_core.methods.spectral.codefile import code_from_json
 
-        code_from_json(given.data, what=f"the code {given.name}")
+        axes = code_from_json(given.data, what=f"the code {given.name}").code.axes
     elif "exemplar" not in inputs:
         raise InputError("MSG needs an exemplar or a code of 69 numbers, and neither was given.")
+    else:
+        axes = params.bandwidth_axes
+    if axes == "radial" and params.equations == "printed":
+        raise ParamError("equations", "corrected where bandwidths are radial and angular", params.equations)
     if params.histogram == "full" and "exemplar" not in inputs:
         raise InputError(
             "histogram: must be coded when there is no exemplar, since a code holds no full histogram."
@@ -122,7 +145,7 @@ def analyze(inputs: Inputs, params: MsgParams) -> Generator[Step, None, MsgModel
     given, exemplar = inputs.get("code"), inputs.get("exemplar")
     masses = None
     if isinstance(exemplar, ImageInput):
-        code, masses = yield from encode(exemplar.pixels, params.bandwidths)
+        code, masses = yield from encode(exemplar.pixels, params.bandwidths, params.bandwidth_axes)
         channels = exemplar.channels
     if isinstance(given, DataInput):
         from texlab_core.methods.spectral.codefile import code_from_json
@@ -136,12 +159,16 @@ def synthesize(
     model: MsgModel, inputs: Inputs, params: MsgParams, size: tuple[int, int], streams: Streams
 ) -> Generator[Step, None, Output]:
     """Make a texture from the numbers alone."""
-    from texlab_core.methods.spectral.synthesis import design, synthesize_plane
+    from texlab_core.methods.spectral.synthesis import design, design_radial, synthesize_plane
 
     noise = 4 if params.phase == "one" else 40
-    progress = Progress({"phase": noise, "channels": 2, "transform": 4, "histogram": 4})
     code = model.code.quantized(params.bandwidth_levels) if params.bandwidth_levels else model.code
-    plan = design(code, size, params.equations)
+    summed = {"overlaps": 20} if code.axes == "radial" else {}
+    progress = Progress({**summed, "phase": noise, "channels": 2, "transform": 4, "histogram": 4})
+    if code.axes == "radial":
+        plan = yield from progress.follow(design_radial(code, size), "overlaps")
+    else:
+        plan = design(code, size, params.equations)
     yield progress.at("phase", 0.0)
     plane = yield from synthesize_plane(code, plan, size, streams, params.phase, progress)
     finish = Finish.choose(code.tone, model.masses, params.histogram, model.channels)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from texlab_core.methods.spectral.fourier import Floats, Half, Plane, draw_phase, inverse, random_phase
+from texlab_core.methods.spectral.radial import RadialLobes
 from texlab_core.transforms.gabor_bank import (
     CENTRES_U,
     CENTRES_V,
@@ -62,7 +63,7 @@ class Design:
     imaginary
         How many synthesis bandwidths have no real solution.
     lobes
-        The channels as products of profiles.
+        The channels as products of profiles, or as Gaussians along and across their waves.
     """
 
     bandwidths_u: Floats
@@ -73,7 +74,7 @@ class Design:
     error: float
     clipped: bool
     imaginary: int
-    lobes: Lobes
+    lobes: Lobes | RadialLobes
 
 
 def synthesis_bandwidths(measured: Floats, equations: Equations = "corrected") -> tuple[Floats, NDArray[np.bool_]]:
@@ -158,26 +159,45 @@ def design(code: MsgCode, size: Size, equations: Equations = "corrected") -> Des
     The overlap R and the channels' energies are sums over the output grid: the closed form is off by up to 78 %
     for bandwidths near one sample of the spectrum.
     """
-    wanted = np.array(code.energies)
     found = [synthesis_bandwidths(np.array(each), equations) for each in (code.bandwidths_u, code.bandwidths_v)]
     imaginary = int(sum(wrong.sum() for _, wrong in found))
     height, width = size
     # Nothing can be narrower than one sample of the spectrum.
     bandwidths_u, bandwidths_v = (np.maximum(b, 1 / n) for (b, _), n in zip(found, (width, height), strict=True))
     lobes = Lobes(bandwidths_u, bandwidths_v, size)
+    printed = _printed_overlap(code) if equations == "printed" else None
+    return _plan(code, size, lobes, (bandwidths_u, bandwidths_v), imaginary, printed)
+
+
+def design_radial(code: MsgCode, size: Size) -> Generator[float, None, Design]:
+    """Do :func:`design` for a code whose bandwidths are radial and angular, yielding fractions."""
+    found = [synthesis_bandwidths(np.array(each))[0] for each in (code.bandwidths_u, code.bandwidths_v)]
+    # Nothing can be narrower than one sample of the spectrum, in whatever direction.
+    radial, angular = (np.maximum(each, 1 / min(size)) for each in found)
+    lobes = RadialLobes(radial, angular, size)
+    yield from lobes.measured()
+    return _plan(code, size, lobes, (radial, angular), 0, None)
+
+
+def _plan(
+    code: MsgCode,
+    size: Size,
+    lobes: Lobes | RadialLobes,
+    bandwidths: tuple[Floats, Floats],
+    imaginary: int,
+    printed: Floats | None,
+) -> Design:
+    """Solve for the energies, with the overlaps on the grid or as printed."""
+    wanted = np.array(code.energies)
     unit = lobes.energies()
     residual = residual_energies(code.residual, size)
     overlap = lobes.overlap() / unit
-    if equations == "printed":
-        solved, clipped = _solve(_printed_overlap(code), wanted)
-    else:
-        solved, clipped = _solve(overlap, wanted - residual)
+    solved, clipped = _solve(overlap, wanted - residual) if printed is None else _solve(printed, wanted)
     achieved = overlap @ solved + residual
     total = float(wanted.sum())
     error = float(np.abs(achieved - wanted).sum() / total) if total > 0 else 0.0
     return Design(
-        bandwidths_u,
-        bandwidths_v,
+        *bandwidths,
         solved,
         solved / unit,
         achieved,
@@ -249,7 +269,9 @@ def synthesize_plane(
     """Return a plane of texture in gray levels, (H, W) float32, before the histogram step."""
     noise, mixing, transform = names
     lobes = plan.lobes
-    if phase == "one":
+    if isinstance(lobes, RadialLobes):
+        half = yield from _radial_noise(lobes, plan.gains, streams, phase, progress, (noise, mixing))
+    elif phase == "one":
         half = yield from random_phase(size, streams, progress, noise)
         yield from _shape(half, lobes, plan.gains, progress, mixing)
     else:
@@ -269,6 +291,34 @@ def _shape(half: Half, lobes: Lobes, gains: Floats, progress: Progress, stage: s
     for rows in _rows(half):
         gabor.shape(half[rows], rows.start, factor_v, factor_u, _NEGLIGIBLE)
         yield progress.at(stage, rows.stop / half.shape[0])
+
+
+def _radial_noise(
+    lobes: RadialLobes,
+    gains: Floats,
+    streams: Streams,
+    phase: PhaseChoice,
+    progress: Progress,
+    names: tuple[str, str],
+) -> Generator[Step, None, Half]:
+    """Return one noise, or sixteen, through channels whose axes follow their waves."""
+    noise, mixing = names
+    if phase == "one":
+        half = yield from random_phase(lobes.size, streams, progress, noise)
+        yield from progress.follow(lobes.shaped(half, gains), mixing)
+        return half
+    height, width = lobes.size
+    total = np.zeros((height, width // 2 + 1), np.complex64)
+    for channel in range(CHANNELS):
+        low, high = channel / CHANNELS, (channel + 0.5) / CHANNELS
+        drawing = draw_phase(lobes.size, streams("phase", channel + 1))
+        half = yield from progress.follow(drawing, noise, low, high)
+        part = lobes.filtered(half, channel, gains[channel])
+        yield from progress.follow(part, noise, high, (channel + 1) / CHANNELS)
+        for rows in _rows(half):
+            total[rows] += half[rows]
+            yield progress.at(noise, (channel + 1) / CHANNELS)
+    return total
 
 
 def _sixteen_noises(
