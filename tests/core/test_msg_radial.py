@@ -90,14 +90,16 @@ def test_a_code_comes_back_from_what_was_made_of_it(phase):
     channel = 9
     energies = [0.0] * CHANNELS
     energies[channel] = 100.0
-    narrow = np.array(WHITE_BANDWIDTHS) * 0.25
+    narrow, broad = np.array(WHITE_BANDWIDTHS) * 0.25, np.array(WHITE_BANDWIDTHS) * 0.75
     quiet = replace(wide.residual, u_axis=0.0, v_axis=0.0, falling=0.0, rising=0.0)
-    code = replace(wide, energies=tuple(energies), bandwidths_u=tuple(narrow), residual=quiet)
+    code = replace(
+        wide, energies=tuple(energies), bandwidths_u=tuple(narrow), bandwidths_v=tuple(broad), residual=quiet
+    )
     back = radial_code(made(code, SIZE, phase))
     reached = finish(design_radial(code, SIZE)).achieved[channel]
     assert back.energies[channel] == pytest.approx(reached, rel=0.02 if phase == "one" else 0.1)
     assert back.bandwidths_u[channel] == pytest.approx(narrow[channel], rel=0.1)
-    assert back.bandwidths_v[channel] == pytest.approx(WHITE_BANDWIDTHS[channel], rel=0.1)
+    assert back.bandwidths_v[channel] == pytest.approx(broad[channel], rel=0.1)
     uv = analyzed(made(code, SIZE, phase))
     assert uv.bandwidths_u[channel] == pytest.approx(uv.bandwidths_v[channel], rel=0.1)
 

@@ -113,7 +113,7 @@ class CodeAnswer:
     reached: Any
 
 
-def encoded(image: FloatImage, measure: BandwidthMeasure, axes: BandwidthAxes) -> MsgCode:
+def encoded(image: FloatImage, measure: BandwidthMeasure, axes: BandwidthAxes = "uv") -> MsgCode:
     """Return the code of an image, (H, W, C) float32."""
     from texlab_core.methods.spectral.encoding import encode
     from texlab_core.work.threads import use_workers
@@ -258,7 +258,7 @@ class CodeDock(FramedDock):
 
             measured = recent.get((Same(exemplar), measure, axes), lambda: encoded(exemplar, measure, axes))
             code = measured if given is None else code_from_json(given.data).code
-            reached = None if image is None else values(encoded(image, measure, "uv"), "energy")
+            reached = None if image is None else values(encoded(image, measure), "energy")
             name = "" if given is None else given.name
             return CodeAnswer(column_id, code, measured, "" if given is None else given.sha256, name, reached)
 
