@@ -21,7 +21,7 @@ CASES = {
     "gabor": (*ZEBRA, "--wavelength", "28", "--orientation", "12", "--local"),
     "equalize": ("ramp", "cube-root", "--ties", "together", "--value", "0.3"),
     "pyramid": (*ZEBRA, "--levels", "2", "--orientations", "2"),
-    "search": (*ZEBRA, "--alpha", "0.3"),
+    "search": (*ZEBRA, "--threshold", "0.3"),
     "shape": ("discs", "--slant", "50", "--tilt", "30", "--size", "128x128"),
     "homogeneity": ("marks", "--slant", "40", "--trials", "5"),
     "sphere": ("--side", "128", "--window", "20"),

@@ -6,7 +6,8 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_file, parse_crop, parse_number, refuse_overwriting
+from texlab.cli.commands._options import output_file, parse_number, refuse_overwriting
+from texlab.cli.commands._sources import add_scale_options, parse_reading
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
@@ -46,8 +47,7 @@ class Experiment:
 def add_image(parser: Parser, name: str = "image", words: str = "the picture") -> None:
     """Add an image with the options that crop and reduce it."""
     parser.add_argument(name, metavar="IMAGE|gallery:NAME", help=words)
-    parser.add_argument("--scale", default="1", metavar="S", help="reduce the image first, 0 < S <= 1")
-    parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    add_scale_options(parser)
 
 
 def add_out(parser: Parser, *, required: bool = False) -> None:
@@ -83,11 +83,8 @@ def out_file(args: argparse.Namespace, *sources: str) -> Path | None:
 
 
 def load(args: argparse.Namespace, source: str) -> ImageInput:
-    """Return the image with scale and crop."""
-    from texlab_core.images.exemplar import as_exemplar
-
-    crop = None if args.crop is None else parse_crop(args.crop)
-    return as_exemplar(source, scale=parse_number("scale", args.scale, float), crop=crop)
+    """Return the image, read as the options say."""
+    return parse_reading(args).read(source)
 
 
 def load_plane(args: argparse.Namespace, source: str) -> NDArray[np.float32]:

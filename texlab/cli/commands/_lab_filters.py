@@ -242,8 +242,8 @@ def _steps(args: argparse.Namespace, plane: Any, levels: int, out: Any) -> int:
 
 def _search_options(parser: Parser) -> None:
     add_image(parser, words="the exemplar")
-    parser.add_argument("--alpha", default="0.15", metavar="A", help="De Bonet's threshold at the coarsest level")
-    parser.add_argument("--beta", default="0", metavar="B", help="how much stricter fine levels are")
+    parser.add_argument("--threshold", default="0.15", metavar="T", help="of the coarsest level, De Bonet's alpha")
+    parser.add_argument("--stricter", default="0", metavar="B", help="how much fine levels are stricter, his beta")
     parser.add_argument("--level", default="1", metavar="L", help="level that is searched (default 1)")
     parser.add_argument("--pixel", metavar="X,Y", help="search for this location of the level (default: for all)")
     parser.add_argument("--components", default="4", metavar="D", help="numbers of a key, 1 to 6 (default 4)")
@@ -251,7 +251,7 @@ def _search_options(parser: Parser) -> None:
 
 
 def _search(args: argparse.Namespace) -> int:
-    values: dict[str, Any] = {name: number(args, name) for name in ("alpha", "beta")}
+    values: dict[str, Any] = {"alpha": number(args, "threshold"), "beta": number(args, "stricter")}
     level, components, seed = whole(args, "level"), whole(args, "components"), _seed(args)
     place = None
     if args.pixel is not None:

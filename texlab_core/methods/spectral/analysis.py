@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.methods.spectral.bandwidths import equivalent_bandwidths
 from texlab_core.methods.spectral.code import MsgCode, Residual, channels
 from texlab_core.methods.spectral.digits import keep_digits
 from texlab_core.methods.spectral.fourier import Floats, Half, Plane, forward, self_conjugate_columns
@@ -20,7 +21,6 @@ from texlab_core.transforms.gabor_bank import (
     MIRRORED_V,
     PROFILE_U,
     PROFILE_V,
-    WHITE_BANDWIDTHS,
     distinct_profiles,
     mirrored,
     residual_reach,
@@ -59,27 +59,6 @@ class Marginals:
         return equivalent_bandwidths(self.u, measure), equivalent_bandwidths(self.v, measure)
 
 
-def equivalent_bandwidths(
-    marginals: Floats, measure: BandwidthMeasure, step: float | None = None, white: Floats = WHITE_BANDWIDTHS
-) -> Floats:
-    """Return the equivalent bandwidth of each marginal spectrum (16, n), in cycles per pixel.
-
-    ``paper`` is the sum over the maximum (eq. 4); ``participation`` is (sum P)^2 / (sqrt(2) sum P^2), equal for a
-    Gaussian but not biased by a noisy maximum. Channels without power get the bandwidths of white noise,
-    ``white``. Samples are ``step`` apart, 1 / n where nothing is said.
-    """
-    total = marginals.sum(axis=1)
-    empty = total <= 0
-    safe = np.where(empty[:, None], 1, marginals)
-    if measure == "paper":
-        widths = safe.sum(axis=1) / safe.max(axis=1)
-    else:
-        # Scaled first, so that squares of very small powers do not vanish.
-        safe = safe / safe.max(axis=1, keepdims=True)
-        widths = safe.sum(axis=1) ** 2 / (math.sqrt(2) * np.square(safe).sum(axis=1))
-    return np.asarray(np.where(empty, white, widths / marginals.shape[1] if step is None else widths * step))
-
-
 def analyze_plane(
     plane: Plane,
     tone: Tone,
@@ -108,7 +87,8 @@ def analyze_plane(
     if axes == "radial":
         from texlab_core.methods.spectral.radial import radial_bandwidths
 
-        u, v = yield from progress.follow(radial_bandwidths(half, plane.shape[1], marginals, measure), features)
+        upright = marginals.bandwidths(measure)
+        u, v = yield from progress.follow(radial_bandwidths(half, plane.shape[1], upright, measure), features)
     else:
         u, v = marginals.bandwidths(measure)
     residual = residual_zones(half, plane.shape[1], mean)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.spectral.analysis import equivalent_bandwidths
+from texlab_core.methods.spectral.bandwidths import equivalent_bandwidths
 from texlab_core.transforms.gabor_bank import (
     CENTRE_ORIENTATIONS,
     CENTRES_U,
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from texlab_core.methods.spectral.analysis import Marginals
     from texlab_core.methods.spectral.choices import BandwidthMeasure
     from texlab_core.methods.spectral.fourier import Floats, Half
 
@@ -53,7 +52,7 @@ _NEGLIGIBLE = 1e-12
 
 
 def radial_bandwidths(
-    half: Half, width: int, marginals: Marginals, measure: BandwidthMeasure
+    half: Half, width: int, along: tuple[Floats, Floats], measure: BandwidthMeasure
 ) -> Generator[float, None, tuple[Floats, Floats]]:
     """Measure the bandwidths of all channels, yielding fractions.
 
@@ -63,8 +62,8 @@ def radial_bandwidths(
         (H, W // 2 + 1) half plane of the picture without its mean.
     width
         W.
-    marginals
-        Those over u and v, which are the radial and angular ones of waves at 0 and 90 degrees.
+    along
+        (16,) bandwidths along u and along v, which are the radial and angular ones of waves at 0 and 90 degrees.
     measure
         As for bandwidths along u and v.
 
@@ -73,7 +72,7 @@ def radial_bandwidths(
     radial, angular
         (16,) float64, in cycles per pixel.
     """
-    along_u, along_v = marginals.bandwidths(measure)
+    along_u, along_v = along
     upright = np.arange(CHANNELS) % ORIENTATIONS == 0
     radial, angular = np.where(upright, along_u, along_v), np.where(upright, along_v, along_u)
     height, columns = half.shape
