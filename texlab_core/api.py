@@ -27,7 +27,7 @@ def synthesize(
     image: Source,
     method: str = "heeger-bergen",
     *,
-    size: tuple[int, int] | None = None,
+    size: tuple[int, ...] | None = None,
     seed: int = 0,
     inputs: Mapping[str, Input] | None = None,
     on_step: Callable[[Step], None] | None = None,
@@ -45,7 +45,7 @@ def synthesize(
     method
         Id of a registered method.
     size
-        Height and width of the result; None takes the exemplar's.
+        Height and width of the result, or depth, height and width for a solid; None takes the exemplar's.
     seed
         0 .. 2147483647; the same seed gives the same bits.
     inputs
@@ -62,7 +62,8 @@ def synthesize(
     Returns
     -------
     Result
-        ``image`` is (H, W, C) float32 in [0, 1]; maps, curves and measures explain it.
+        ``image`` is (H, W, C) float32 in [0, 1], ``volume`` (D, H, W, C) for a solid; maps, curves and measures
+        explain it.
 
     Raises
     ------

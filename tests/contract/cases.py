@@ -40,10 +40,20 @@ def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> J
         if spec.kind == "image" and spec.name == "exemplar":
             inputs[spec.name] = exemplar or texture(24, 32)
         elif spec.required:
-            raise AssertionError(
-                f"Give tests/contract/cases.py an example of the input {spec.name} of {method.id}."
-            )
+            if spec.kind != "image":
+                raise AssertionError(
+                    f"Give tests/contract/cases.py an example of the input {spec.name} of {method.id}."
+                )
+            # Another texture of another size, of as many channels.
+            inputs[spec.name] = texture(21, 26, inputs["exemplar"].channels)
+    if changes.get("size") is not None:
+        changes["size"] = size_for(method, changes["size"])
     return Job(**({"method": method.id, "inputs": inputs} | changes))
+
+
+def size_for(method: Method, size: tuple[int, int]) -> tuple[int, ...]:
+    """Return a size as the method takes it: with a small depth before it for a method of three dimensions."""
+    return (*(5,) * (method.dimensions - 2), *size)
 
 
 def params_of(method: Method) -> st.SearchStrategy[Params]:

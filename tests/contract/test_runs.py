@@ -12,9 +12,10 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from tests.contract.cases import IDS, METHODS, assert_image, assert_sentence, job, params_of, texture
+from tests.contract.cases import IDS, METHODS, assert_image, assert_sentence, job, params_of, size_for, texture
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.run import run
+from texlab_core.engine.sizes import default_size
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
@@ -37,7 +38,7 @@ def watched(job: Any, **options: Any) -> tuple[Result, list[Step]]:
         steps.append(step)
         if step.preview is not None:
             preview = step.preview()
-            assert_image(preview, (*job.size, job.inputs["exemplar"].channels))
+            assert_image(preview, (*job.picture_size, job.inputs["exemplar"].channels))
             if preview.flags.writeable:
                 preview[:] = 0.5
 
@@ -46,6 +47,9 @@ def watched(job: Any, **options: Any) -> tuple[Result, list[Step]]:
 
 def assert_same_bits(one: Result, other: Result) -> None:
     np.testing.assert_array_equal(one.image, other.image)
+    assert (one.volume is None) == (other.volume is None)
+    if one.volume is not None:
+        np.testing.assert_array_equal(one.volume, other.volume)
     assert one.maps.keys() == other.maps.keys()
     assert one.measures == other.measures
     assert one.notes == other.notes
@@ -152,11 +156,16 @@ def test_work_between_steps_is_short(method: Method) -> None:
 def test_the_output_is_what_was_asked_for(method: Method, channels: int, size: tuple[int, int]) -> None:
     exemplar = texture(24, 32, channels)
     result = run(job(method, exemplar, size=size))
-    assert_output(result, size, exemplar.pixels.shape)
+    assert_output(result, size_for(method, size), exemplar.pixels.shape)
 
 
-def assert_output(result: Result, size: tuple[int, int], exemplar: tuple[int, ...]) -> None:
-    assert_image(result.image, (*size, exemplar[2]))
+def assert_output(result: Result, size: tuple[int, ...], exemplar: tuple[int, ...]) -> None:
+    assert result.job.size == size
+    assert_image(result.image, (*size[-2:], exemplar[2]))
+    assert (result.volume is not None) == (len(size) == 3)
+    if result.volume is not None:
+        assert_image(result.volume, (*size, exemplar[2]))
+        np.testing.assert_array_equal(result.image, result.volume[size[0] // 2])
     for name, each in result.maps.items():
         assert name == name.lower().replace(" ", "-").replace("_", "-")
         assert each.title
@@ -172,7 +181,8 @@ def assert_output(result: Result, size: tuple[int, int], exemplar: tuple[int, ..
         assert_sentence(note)
 
 
-def assert_map(each: Map, size: tuple[int, int], exemplar: tuple[int, ...]) -> None:
+def assert_map(each: Map, size: tuple[int, ...], exemplar: tuple[int, ...]) -> None:
+    assert each.plane.data.shape[:2] == size[-2:]
     if each.kind == "source":
         assert each.data.shape == (*size, 2)
         assert each.data.dtype == np.int32
@@ -214,7 +224,8 @@ def test_odd_inputs_work_or_are_refused_in_one_sentence(
     except InputError as error:
         assert_sentence(str(error))
         return
-    assert_output(result, size or exemplar.size, exemplar.pixels.shape)
+    expected = default_size(exemplar.size, method.dimensions) if size is None else size_for(method, size)
+    assert_output(result, expected, exemplar.pixels.shape)
 
 
 @pytest.mark.slow
@@ -229,4 +240,4 @@ def test_every_setting_works_or_is_refused_in_one_sentence(method: Method, data:
     except InputError as error:
         assert_sentence(str(error))
         return
-    assert_output(result, (11, 18), exemplar.pixels.shape)
+    assert_output(result, size_for(method, (11, 18)), exemplar.pixels.shape)

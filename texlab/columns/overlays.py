@@ -86,4 +86,4 @@ def available(scene: ColumnScene) -> tuple[tuple[str, str], ...]:
 def _colour(task: Task, column_id: int, result: Result, name: str) -> Coloured:
     exemplar = result.job.inputs.get("exemplar")
     extent = getattr(exemplar, "size", None)
-    return column_id, id(result), colour_map(result.maps[name], extent)
+    return column_id, id(result), colour_map(result.maps[name].plane, extent)

@@ -148,7 +148,7 @@ class MapsDock(FramedDock):
         self.controls.show()
         replace_items(self.chooser, [(each.title, name) for name, each in result.maps.items()])
         name = self.chooser.currentData()
-        shown = result.maps[name]
+        shown = result.maps[name].plane
         below = column.picture
         extent = scene.exemplar.size if scene.exemplar is not None else None
         region = self._region

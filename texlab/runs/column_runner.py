@@ -52,7 +52,7 @@ class ColumnRunner(QObject):
         """What the full size takes, as far as that is known."""
         self.drafted = False
         """Whether the newest job is a draft."""
-        self._full = (1, 1)  # of the newest job, as the session has it
+        self._full: tuple[int, ...] = (1, 1)  # of the newest job, as the session has it
         # Where pictures come as fast as events, the column stays as it is until the next one is there.
         self._live = False
         self._run: ColumnRun | None = None
@@ -98,14 +98,15 @@ class ColumnRunner(QObject):
         What is asked of this column ``alone`` goes before what all of them have to do.
         """
         method = find_method(column.method)
-        full = column.size or state.size
-        self._full = state.size
+        full = state.size_of(column)
+        self._full = full
         origin = method.id, exemplar.sha256
         if origin != self._origin:
             # Where another method stood, or the same on another exemplar, is no place to go on from.
             self._origin, self._kept = origin, None
         # What is filled keeps its size: a smaller start image would be another job.
-        size = draft_size(full, self.seconds) if draft and column.size is None else None
+        smaller = draft and (column.size is None or method.dimensions == 3)
+        size = draft_size(full, self.seconds) if smaller else None
         own_draft = size is not None and method.draft is not None
         # Within a drag every picture is finished, or none would be while the events come faster than they.
         patient, self.drafted = draft and self.drafted, draft
@@ -210,8 +211,8 @@ class ColumnRunner(QObject):
         if isinstance(end, Drafted):
             self._show(status=status, message="", picture=end.picture, image=end.image, result=None, draft=True)
             return
-        # A draft tells as well how long the full size would take: the time grows with the area.
-        drawn = end.result.image.shape[0] * end.result.image.shape[1]
+        # A draft tells as well how long the full size would take: the time grows with the number of samples.
+        drawn = math.prod(end.result.job.size)
         self.seconds = end.result.elapsed_s * max(1.0, math.prod(self._full) / drawn)
         if not end.draft:
             self._kept = self._run.state if self._run is not None else None
@@ -240,7 +241,7 @@ class ColumnRunner(QObject):
 
 
 def job_of(
-    column: Column, exemplar: ImageInput, size: tuple[int, int], seed: int, state: Keep | None = None
+    column: Column, exemplar: ImageInput, size: tuple[int, ...], seed: int, state: Keep | None = None
 ) -> Job:
     """Return a column's job, going on from a state that is read now."""
     inputs = with_exemplar(exemplar, column.inputs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,6 +11,8 @@ from texlab.runs.column_run import TaskLike, with_exemplar
 from texlab.state.sweeps import ShownCell
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import size_text
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import Cell, Sweep
 from texlab_core.sheets.sweep_running import Places, run_sweep
@@ -39,7 +42,7 @@ def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput
     InputError
         When it cannot be run, or would not fit in memory.
     """
-    size = state.size if plan.side is None else (plan.side, plan.side)
+    size = state.size_of(column) if plan.side is None else (plan.side,) * find_method(column.method).dimensions
     base = Job(
         method=column.method,
         inputs=with_exemplar(exemplar, column.inputs),
@@ -48,9 +51,10 @@ def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput
         seed=state.seed,
     )
     sweep = Sweep(base, plan.axes)
-    if len(sweep.jobs) * size[0] * size[1] > MAX_PIXELS:
+    # Of solids only the slices that are shown are kept.
+    if len(sweep.jobs) * math.prod(base.picture_size) > MAX_PIXELS:
         raise InputError(
-            f"{len(sweep.jobs)} cells of {size[1]} x {size[0]} are more than "
+            f"{len(sweep.jobs)} cells of {size_text(size)} are more than "
             f"{MAX_PIXELS // 2**20} megapixels; ask for fewer or smaller cells."
         )
     return sweep

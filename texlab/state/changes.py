@@ -86,12 +86,14 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     job = opened.job
     assert job is not None
     extra = tuple((name, value) for name, value in job.inputs.items() if name != "exemplar")
-    state = dataclasses.replace(state, sample=sample_as_used(opened.image), seed=job.seed, size=job.size)
+    # A solid's size is its column's own; all other columns go on making pictures of theirs.
+    size, own = (job.picture_size, None) if len(job.size) == 2 else (state.size, job.size)
+    state = dataclasses.replace(state, sample=sample_as_used(opened.image), seed=job.seed, size=size)
     for column in state.columns:
         if column.method == job.method:
-            changed = dataclasses.replace(column, params=job.params, inputs=extra, size=None)
+            changed = dataclasses.replace(column, params=job.params, inputs=extra, size=own)
             return state.with_column(changed), column.id
-    added = Column(state.next_id, job.method, job.params, extra)
+    added = Column(state.next_id, job.method, job.params, extra, own)
     return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from texlab_core.engine.job import DEFAULT_SIZE, MAX_SEED
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import default_size, size_text
 
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input
@@ -48,14 +50,15 @@ class Column:
     inputs
         Further named inputs (a mask, a code, a state); the exemplar is the session's.
     size
-        Height and width of its result; None is the session's.
+        Height and width of its result; None is the session's. Depth, height and width for a method of three
+        dimensions; None is then a cube with the session's shorter side, at most 64.
     """
 
     id: int
     method: str
     params: Params
     inputs: tuple[tuple[str, Input], ...] = ()
-    size: tuple[int, int] | None = None
+    size: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,10 @@ class State:
     def column(self, column_id: int) -> Column | None:
         """Return the column with this id."""
         return next((column for column in self.columns if column.id == column_id), None)
+
+    def size_of(self, column: Column) -> tuple[int, ...]:
+        """Return the size of a column's result."""
+        return column.size or default_size(self.size, find_method(column.method).dimensions)
 
     def with_column(self, changed: Column) -> State:
         """Return a state in which the column with the same id is replaced."""
@@ -225,6 +232,13 @@ class Session(QObject):
             changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None)
             self.apply(self.state.with_column(changed), f"method {method}")
 
+    def set_column_size(self, column_id: int, size: tuple[int, ...], *, merge: object | None = None) -> None:
+        """Give a column's result a size of its own."""
+        column = self.state.column(column_id)
+        if column is not None:
+            changed = dataclasses.replace(column, size=size)
+            self.apply(self.state.with_column(changed), f"size {size_text(size)}", merge=merge)
+
     def set_inputs(
         self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, *, merge: object | None = None
     ) -> None:
@@ -246,7 +260,7 @@ class Session(QObject):
         return column.id
 
     def fill(
-        self, params: Params, inputs: tuple[tuple[str, Input], ...], size: tuple[int, int] | None, method: str
+        self, params: Params, inputs: tuple[tuple[str, Input], ...], size: tuple[int, ...] | None, method: str
     ) -> int:
         """Fill holes in the column that filled before, or in a new one at the end; returns its id."""
         state = self.state

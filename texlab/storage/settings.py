@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.registry import Method
 
     # Method, parameters, further inputs and the column's own size.
-    SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, int] | None]
+    SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, ...] | None]
 
 log = logging.getLogger(__name__)
 
@@ -133,7 +133,7 @@ def columns_from_json(data: Any, tell: Callable[[str], None] = log.warning) -> l
         try:
             method = methods()[each["method"]]
             params = method.params.from_json(each["params"])
-            size = None if each.get("size") is None else check_size(tuple(each["size"]))
+            size = None if each.get("size") is None else check_size(tuple(each["size"]), method.dimensions)
             inputs = _inputs_from_json(each.get("inputs", {}), method, tell)
             found.append((method.id, params, inputs, size))
         except (InputError, AttributeError, KeyError, TypeError, ValueError) as error:

@@ -127,10 +127,10 @@ class Presenter(QObject):
                 text = describe_pixel(scene.image, row, column)
                 maps = scene.result.maps if scene.result is not None else {}
                 if "source" in maps:
-                    origin = maps["source"].data[row, column]
+                    origin = maps["source"].plane.data[row, column]
                     text += f"   from exemplar {origin[1]}, {origin[0]}"
                 if "candidates" in maps:
-                    text += f"   candidates {maps['candidates'].data[row, column]}"
+                    text += f"   candidates {maps['candidates'].plane.data[row, column]}"
         self._window.pixel_label.setText(text)
 
     def _show_choice(self) -> None:

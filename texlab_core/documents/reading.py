@@ -13,6 +13,7 @@ from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import check_seed, check_size
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import Method, find_method
+from texlab_core.engine.sizes import size_from_json
 from texlab_core.errors import InputError, NoRecipeError, RecipeError
 from texlab_core.files import strict_json
 from texlab_core.files.wording import sentence_case
@@ -43,7 +44,8 @@ def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
     Parameters
     ----------
     source
-        Path or bytes of a PNG or TIFF, path of a JPEG with its ``.texlab.json`` beside it, or such a file itself.
+        Path or bytes of a PNG or TIFF, path of a JPEG, .npy, GIF or WebP with its ``.texlab.json`` beside it, or
+        such a file itself.
 
     Raises
     ------
@@ -100,6 +102,8 @@ def _tiff_description(file: BinaryIO) -> str | None:
             if tag is None or tag.count > MAX_BYTES:
                 return None
             text = tag.value
+            if isinstance(text, str) and text.startswith("ImageJ="):
+                text = _imagej_info(page)
     except Exception as error:
         # tifffile raises all kinds of errors on damaged files.
         raise ValueError("is damaged") from error
@@ -113,7 +117,18 @@ def _tiff_description(file: BinaryIO) -> str | None:
 
 def _beside(head: bytes) -> bool:
     """Return whether a file is of a format that keeps its recipe in a file beside it."""
-    return head.startswith(b"\xff\xd8\xff") or (head[:4] == b"RIFF" and head[8:12] == b"WEBP")
+    return head.startswith((b"\xff\xd8\xff", b"\x93NUMPY", b"GIF8")) or (
+        head[:4] == b"RIFF" and head[8:12] == b"WEBP"
+    )
+
+
+def _imagej_info(page: Any) -> object:
+    """Return the text that goes with a stack; the description says how ImageJ takes its pages."""
+    tag = page.tags.get("IJMetadata")
+    if tag is None or tag.count > 2 * MAX_BYTES:
+        return None
+    found = tag.value
+    return found.get("Info") if isinstance(found, dict) else None
 
 
 def _parse(text: str | bytes, name: str) -> Recipe:
@@ -132,11 +147,10 @@ def _recipe(data: Any) -> Recipe:
         raise RecipeError(f"it has version {version!r:.20}, and this TexLab reads version {VERSION}.")
     name = _get(data, "method", str)
     method = find_method(name)
-    size = _get(data, "size", dict)
     return Recipe(
         method=name,
         params=method.params.from_json(_get(data, "params", dict)),
-        size=check_size((size.get("height"), size.get("width"))),
+        size=size_from_json(_get(data, "size", dict), method.dimensions),
         seed=check_seed(data.get("seed")),
         versions=_versions(data.get("versions", {})),
         inputs=_inputs(_get(data, "inputs", dict), method),

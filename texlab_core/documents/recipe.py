@@ -9,6 +9,7 @@ from texlab_core.documents.embedding import embed, unpack_arrays, unpack_pixels
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import versions
+from texlab_core.engine.sizes import size_to_json
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.images.exemplar import as_exemplar, take
 
@@ -171,7 +172,7 @@ class Recipe:
     params
         Its parameters; those that the file does not have take their defaults.
     size
-        Height and width of the result.
+        Height and width of the result, or depth, height and width.
     seed
         0 .. 2147483647.
     versions
@@ -182,7 +183,7 @@ class Recipe:
 
     method: str
     params: Params
-    size: tuple[int, int]
+    size: tuple[int, ...]
     seed: int
     versions: Mapping[str, str]
     inputs: Mapping[str, RecipeInput]
@@ -241,12 +242,11 @@ class Recipe:
 def recipe_json(result: Result) -> dict[str, Any]:
     """Return the recipe of a result as JSON data, with its inputs."""
     job = result.job
-    height, width = job.size
     return {
         "texlab": VERSION,
         "method": job.method,
         "params": job.params.to_json(),
-        "size": {"width": width, "height": height},
+        "size": size_to_json(job.size),
         "seed": job.seed,
         "versions": dict(result.versions),
         "inputs": {role: embed(each) for role, each in job.inputs.items()},

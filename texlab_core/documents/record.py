@@ -13,15 +13,17 @@ import numpy as np
 from texlab_core.documents.reading import KEY, read_recipe, sidecar
 from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
 from texlab_core.engine.inputs import ImageInput
-from texlab_core.files.whole import write_together
+from texlab_core.engine.sizes import size_to_json
+from texlab_core.files.whole import write_together, write_whole
 from texlab_core.images.formats.maps import save_maps
+from texlab_core.images.formats.volumes import check_volume_format, default_volume_bits, encode_volume
 from texlab_core.images.formats.writing import check_format, default_bits, encode_image, write_image
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from texlab_core.engine.result import Result
-    from texlab_core.engine.steps import FloatImage
+    from texlab_core.engine.steps import FloatImage, FloatVolume
     from texlab_core.images.formats.writing import Bits
 
 __all__ = [
@@ -41,17 +43,17 @@ _BESIDE = (".jpg", ".jpeg", ".webp")
 def save_result(
     result: Result, path: str | os.PathLike[str], *, bits: Bits | None = None, alpha: FloatImage | None = None
 ) -> None:
-    """Save a result's image with its recipe.
+    """Save a result's image, or its volume, with its recipe.
 
-    A PNG has the recipe as a text chunk, a TIFF as its description, and a JPEG or WebP as a file ``.texlab.json``
-    beside it. The recipe holds every input up to 2 MB.
+    A PNG has the recipe as a text chunk, a TIFF as its description (a stack as ImageJ's info), and a JPEG, WebP or
+    .npy as a file ``.texlab.json`` beside it. The recipe holds every input up to 2 MB.
 
     Parameters
     ----------
     result
         What to save.
     path
-        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg.
+        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg; for a volume in .tif, .tiff or .npy.
     bits
         8, 16 or "float" (TIFF only) for each sample; by default the exemplar's own, as far as the format goes.
     alpha
@@ -65,9 +67,11 @@ def save_result(
         When a file cannot be written.
     """
     bits = result_bits(result, path) if bits is None else bits
-    suffix = check_format(path, bits)
+    suffix = check_result_format(path, bits, len(result.job.size))
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
-    if suffix in _BESIDE:
+    if result.volume is not None:
+        _save_volume(result.volume, path, bits, recipe)
+    elif suffix in _BESIDE:
         write_together(
             {
                 sidecar(path): recipe.encode(),
@@ -84,7 +88,28 @@ def result_bits(result: Result, path: str | os.PathLike[str]) -> Bits:
     That is the exemplar's own; 8 bits where a result has none. Raises ``ImageError`` for a name without a format.
     """
     exemplar = result.job.inputs.get("exemplar")
-    return default_bits(path, exemplar.depth if isinstance(exemplar, ImageInput) else 8)
+    depth: Bits = exemplar.depth if isinstance(exemplar, ImageInput) else 8
+    return default_volume_bits(path, depth) if len(result.job.size) == 3 else default_bits(path, depth)
+
+
+def check_result_format(path: str | os.PathLike[str], bits: Bits | None = None, dimensions: int = 2) -> str:
+    """Return the suffix in lower case.
+
+    Raises
+    ------
+    ImageError
+        When no result of so many dimensions can be written under this name, or not with these bits.
+    """
+    if dimensions == 3:
+        return check_volume_format(path, bits)
+    return check_format(path, 8 if bits is None else bits)
+
+
+def _save_volume(volume: FloatVolume, path: str | os.PathLike[str], bits: Bits, recipe: str) -> None:
+    if Path(path).suffix.lower() == ".npy":
+        write_together({sidecar(path): recipe.encode(), Path(path): encode_volume(path, volume)})
+    else:
+        write_whole(path, encode_volume(path, volume, bits=bits, info=recipe))
 
 
 def carried_alpha(result: Result) -> FloatImage | None:
@@ -127,12 +152,11 @@ def summary(
     """
     measures = result.measures if measures is None else measures
     job = result.job
-    height, width = job.size
     exemplar = job.inputs.get("exemplar")
     return {
         "method": job.method,
         "parameters": job.params.to_json(),
-        "size": {"width": width, "height": height},
+        "size": size_to_json(job.size),
         "seed": job.seed,
         "elapsed_s": float(result.elapsed_s),
         "out": None if out is None else os.fspath(out),

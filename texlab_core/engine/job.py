@@ -9,13 +9,16 @@ import numpy as np
 
 from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, Input, shorten
 from texlab_core.engine.params import Params, frozen_mapping
-from texlab_core.engine.registry import Method, find_method
+from texlab_core.engine.registry import Estimate, Method, find_method
+from texlab_core.engine.sizes import MAX_PIXELS as MAX_PIXELS
+from texlab_core.engine.sizes import check_size as check_size
+from texlab_core.engine.sizes import default_size, size_text
 from texlab_core.errors import InputError, ParamError
+from texlab_core.work.memory import machine_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-MAX_PIXELS = 64 * 2**20
 MAX_SEED = 2**31 - 1
 # Of an output that nothing else decides.
 DEFAULT_SIZE = (256, 256)
@@ -35,7 +38,8 @@ class Job:
     params
         The method's parameters; None takes the defaults.
     size
-        Height and width of the output; None takes the exemplar's.
+        Height and width of the output; None takes the exemplar's. For methods of three dimensions depth, height
+        and width; None takes a cube with the exemplar's shorter side, at most 64.
     seed
         0 .. 2147483647.
 
@@ -48,7 +52,7 @@ class Job:
     method: str
     inputs: Mapping[str, Input]
     params: Params = None  # type: ignore[assignment]  # None is replaced in __post_init__
-    size: tuple[int, int] = None  # type: ignore[assignment]
+    size: tuple[int, ...] = None  # type: ignore[assignment]
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -61,14 +65,22 @@ class Job:
         object.__setattr__(self, "params", params)
         object.__setattr__(self, "inputs", frozen_mapping(self.inputs))
         _check_inputs(method, self.inputs)
-        object.__setattr__(self, "size", check_size(self._default_size() if self.size is None else self.size))
+        size = self._default_size(method.dimensions) if self.size is None else self.size
+        object.__setattr__(self, "size", check_size(size, method.dimensions))
         object.__setattr__(self, "seed", check_seed(self.seed))
         if method.check is not None:
             method.check(self.inputs, self.params, self.size)
+        if method.estimate is not None:
+            _check_memory(method, method.estimate(self.inputs, self.params, self.size), self.size)
 
-    def _default_size(self) -> tuple[int, int]:
+    def _default_size(self, dimensions: int) -> tuple[int, ...]:
         exemplar = self.inputs.get("exemplar")
-        return exemplar.size if isinstance(exemplar, ImageInput) else DEFAULT_SIZE
+        return default_size(exemplar.size if isinstance(exemplar, ImageInput) else DEFAULT_SIZE, dimensions)
+
+    @property
+    def picture_size(self) -> tuple[int, int]:
+        """Height and width of the picture: the output itself, or the slice that stands for a volume."""
+        return self.size[-2], self.size[-1]
 
     @property
     def brief(self) -> str:
@@ -95,18 +107,14 @@ def check_seed(seed: object) -> int:
     return int(seed)
 
 
-def check_size(size: object) -> tuple[int, int]:
-    """Return (height, width); raises ``ParamError`` unless both are at least 1 and it is at most 64 megapixels."""
-    allowed = "height and width of at least 1 pixel and at most 64 megapixels together"
-    if not isinstance(size, tuple | list) or len(size) != 2:
-        raise ParamError("size", allowed, size)
-    height, width = size
-    for side in (height, width):
-        if isinstance(side, bool) or not isinstance(side, int | np.integer) or side < 1:
-            raise ParamError("size", allowed, size)
-    if int(height) * int(width) > MAX_PIXELS:
-        raise ParamError("size", allowed, size)
-    return int(height), int(width)
+def _check_memory(method: Method, estimate: Estimate, size: tuple[int, ...]) -> None:
+    """Raise ``InputError`` when a run takes more memory than the machine has."""
+    held = machine_bytes()
+    if held is not None and estimate.nbytes > held:
+        raise InputError(
+            f"{method.title} of {size_text(size)} needs about {estimate.nbytes / 1e9:.1f} GB of memory, and this"
+            f" machine has {held / 1e9:.1f} GB; choose a smaller size."
+        )
 
 
 def _check_inputs(method: Method, inputs: Mapping[str, Input]) -> None:

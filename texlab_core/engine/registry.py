@@ -17,6 +17,9 @@ from texlab_core.engine.steps import FloatImage, Output, Step
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from texlab_core.engine.inputs import DataInput
     from texlab_core.engine.params import Params
 
 Steps = Generator[Step, None, Any]
@@ -30,6 +33,18 @@ class InputSpec:
     help: str
     kind: Literal["image", "data", "arrays"] = "image"
     required: bool = True
+    background: float = 1.0
+    """Gray level under the transparent pixels of an image: what is transparent in a mask is not marked."""
+    read: Callable[[Path], DataInput] | None = None
+    """Reads a file of the kind ``data``; without it any JSON file is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What a run is expected to take: seconds on one core, and bytes beyond what the program holds already."""
+
+    seconds: float
+    nbytes: int
 
 
 EXEMPLAR = InputSpec("exemplar", "The texture to make more of.")
@@ -73,6 +88,10 @@ class Method:
         Ids of the registered measures that its outputs carry.
     random
         False when no bit of the result depends on the seed.
+    dimensions
+        2 when it makes images of (height, width), 3 when it makes volumes of (depth, height, width).
+    estimate
+        ``estimate(inputs, params, size)`` foretells what a run takes, for methods that may take long or much.
     package
         Who declares it; filled in when it is found.
     """
@@ -92,6 +111,8 @@ class Method:
     order: int = 100
     measures: tuple[str, ...] = ()
     random: bool = True
+    dimensions: Literal[2, 3] = 2
+    estimate: Callable[..., Estimate] | None = None
     package: str = OWN_PACKAGE
 
 

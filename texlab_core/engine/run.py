@@ -74,6 +74,7 @@ def run(
         job=job,
         model=model,
         image=output.image,
+        volume=output.volume,
         maps=output.maps,
         curves=output.curves,
         measures=output.measures,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 
 FloatImage = NDArray[np.float32]
+FloatVolume = NDArray[np.float32]
 MapKind = Literal["source", "count", "label", "scalar"]
 Phase = Literal["analysis", "synthesis"]
 
@@ -30,7 +31,8 @@ class Step:
     metrics
         Numbers worth watching, by name.
     preview
-        Makes a picture of the state, (H, W, C) float32 in [0, 1]; valid only until the computation goes on.
+        Makes a picture of the state, (H, W, C) float32 in [0, 1]; valid only until the computation goes on. Of a
+        volume it is the middle slice.
     frame
         Name of a stage worth keeping for the scrubber ("noise", "iteration 3", "level 2"); needs a ``preview``.
     state
@@ -63,7 +65,7 @@ class Map:
     ----------
     data
         ``source``: (H, W, 2) int32, row and column in the exemplar; ``count``: (H, W) integers;
-        ``label``: (H, W) int32, 0 is none; ``scalar``: (H, W) float32.
+        ``label``: (H, W) int32, 0 is none; ``scalar``: (H, W) float32. On a volume's grid they have D before H.
     kind
         Decides how it is shown.
     title
@@ -80,6 +82,13 @@ class Map:
     def __repr__(self) -> str:
         """Return one short line."""
         return f"<Map: {self.title}, {self.kind}, {' x '.join(map(str, self.data.shape))} {self.data.dtype}>"
+
+    @property
+    def plane(self) -> Map:
+        """The map itself, or the middle slice of one on a volume's grid."""
+        if self.data.ndim == (3 if self.kind == "source" else 2):
+            return self
+        return replace(self, data=middle_slice(self.data))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -124,7 +133,9 @@ class Output:
     Parameters
     ----------
     image
-        (H, W, C) float32 in [0, 1], of the size that was asked for.
+        (H, W, C) float32 in [0, 1], of the size that was asked for. Left out, it is the volume's middle slice.
+    volume
+        (D, H, W, C) float32 in [0, 1], from methods of three dimensions; else None.
     maps, curves
         Evidence by name (lower-case words with hyphens).
     measures
@@ -135,7 +146,8 @@ class Output:
         Whatever the method's own views need to explain the result; nobody else looks inside.
     """
 
-    image: FloatImage
+    image: FloatImage = None  # type: ignore[assignment]  # None is replaced in __post_init__
+    volume: FloatVolume | None = None
     maps: Mapping[str, Map] = field(default_factory=dict)
     curves: Mapping[str, Curve] = field(default_factory=dict)
     measures: Mapping[str, float] = field(default_factory=dict)
@@ -145,3 +157,16 @@ class Output:
     def __repr__(self) -> str:
         """Return one short line."""
         return f"<Output: {' x '.join(map(str, self.image.shape))} {self.image.dtype}>"
+
+    def __post_init__(self) -> None:
+        image: FloatImage | None = self.image
+        if image is None:
+            if self.volume is None:
+                raise TypeError("An output needs an image or a volume.")
+            object.__setattr__(self, "image", middle_slice(self.volume))
+
+
+def middle_slice(volume: NDArray[Any]) -> NDArray[Any]:
+    """Return the slice (H, W, ...) that stands for a volume (D, H, W, ...) as a picture, as a copy."""
+    middle: NDArray[Any] = volume[volume.shape[0] // 2].copy()
+    return middle

@@ -13,7 +13,7 @@ from texlab_core.images.exemplar import as_exemplar
 from texlab_core.sheets.contact_sheet import Tile, contact_sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -39,12 +39,19 @@ def title_of(name: str) -> str:
 
 
 def make(
-    method: str, exemplar: ImageInput, size: int | tuple[int, int] = 128, seed: int = 1, **values: Any
+    method: str,
+    exemplar: ImageInput,
+    size: int | tuple[int, ...] = 128,
+    seed: int = 1,
+    inputs: Mapping[str, ImageInput] | None = None,
+    **values: Any,
 ) -> Result:
     """Run a method with some of its parameters."""
-    shape = (size, size) if isinstance(size, int) else size
-    params = find_method(method).params.from_json(values)
-    return run(Job(method=method, inputs={"exemplar": exemplar}, params=params, size=shape, seed=seed))
+    chosen = find_method(method)
+    shape = (size,) * chosen.dimensions if isinstance(size, int) else size
+    params = chosen.params.from_json(values)
+    given = {"exemplar": exemplar, **(inputs or {})}
+    return run(Job(method=method, inputs=given, params=params, size=shape, seed=seed))
 
 
 def frames(method: str, exemplar: ImageInput, size: int, seed: int = 1, **values: Any) -> dict[str, FloatImage]:

@@ -182,7 +182,7 @@ class Cell:
     values
         What was varied, by name.
     result
-        What came out, without maps, model and details; None when it failed.
+        What came out, without volume, maps, model and details; None when it failed.
     error
         Why it failed, one sentence.
     measures

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
-from texlab_core.engine.job import Job, check_seed, check_size
+from texlab_core.engine.job import Job, check_seed
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import size_from_json, size_to_json
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.files import strict_json
 from texlab_core.files.resources import resource
@@ -96,7 +97,7 @@ class SweepRecipe:
     note
         What it shows.
     size
-        Height and width of the cells; None takes the exemplar's.
+        Height and width (or depth, height and width) of the cells; None takes the exemplar's.
     seed
         Of every cell, unless it is varied.
     exemplar
@@ -108,7 +109,7 @@ class SweepRecipe:
     axes: tuple[Vary, ...]
     parameters: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
-    size: tuple[int, int] | None = None
+    size: tuple[int, ...] | None = None
     seed: int = 0
     exemplar: ExemplarChoice | None = None
 
@@ -158,7 +159,7 @@ class SweepRecipe:
             {"name": axis.name, "values": [_plain(each) for each in axis.values]} for axis in self.axes
         ]
         if self.size is not None:
-            data["size"] = {"width": self.size[1], "height": self.size[0]}
+            data["size"] = size_to_json(self.size)
         data["seed"] = self.seed
         if self.exemplar is not None:
             chosen = {
@@ -204,7 +205,7 @@ def _from_json(given: object) -> SweepRecipe:
         axes=tuple(_axis(each, method.params) for each in vary),
         parameters=frozen_mapping({name: complete[name] for name in named}),
         note=_text(data, "note", 4000, ""),
-        size=_size(data.get("size")),
+        size=None if data.get("size") is None else size_from_json(data["size"], method.dimensions),
         seed=check_seed(data.get("seed", 0)),
         exemplar=_exemplar(data.get("exemplar")),
     )
@@ -239,14 +240,6 @@ def _axis(data: object, params: type[Params]) -> Vary:
         raise RecipeError(f"vary: log must be true or false, got {strict_json.shorten(log)}.")
     knob = check_knob(name, params, number=True)
     return Vary(name, spread(knob, knob.check(data["from"]), knob.check(data["to"]), data["count"], log=log))
-
-
-def _size(data: object) -> tuple[int, int] | None:
-    if data is None:
-        return None
-    if not isinstance(data, dict) or set(data) != {"width", "height"}:
-        raise RecipeError(f"size: must hold a width and a height, got {strict_json.shorten(data)}.")
-    return check_size((data["height"], data["width"]))
 
 
 def _exemplar(data: object) -> ExemplarChoice | None:

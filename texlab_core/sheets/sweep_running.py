@@ -173,7 +173,7 @@ class _State:
         finally:
             turn.give_back()
         found = measure_quick(Subject.of_result(result, self.prepared, self.stop.is_set))
-        light = dataclasses.replace(result, model=None, maps={}, details=None)
+        light = dataclasses.replace(result, volume=None, model=None, maps={}, details=None)
         return {"result": light, "measures": found}
 
     def _lock_of(self, job: Job) -> threading.Lock:

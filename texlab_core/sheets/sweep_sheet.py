@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING
 
 from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import size_text
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.sheets.sweep import show
 
@@ -97,7 +98,7 @@ def write_sheet(
     from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
     across = sheet_columns(sweep) if columns is None else columns
-    check_sheet(len(sweep.jobs), across, sweep.base.size, largest)
+    check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
     sheet = sweep_sheet(sweep, cells, columns=across, largest=largest)
     recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
     text = json.dumps(recipe, separators=(",", ":"), allow_nan=False)
@@ -114,7 +115,7 @@ def sweep_title(sweep: Sweep) -> tuple[str, str]:
     names = [axis.name.replace("_", " ") for axis in sweep.axes]
     varied = names[0] if len(names) == 1 else f"{names[0]} across, {names[1]} down"
     base = sweep.base
-    fixed = [f"{base.size[1]} x {base.size[0]}"]
+    fixed = [size_text(base.size)]
     fixed += [] if "seed" in names else [f"seed {base.seed}"]
     defaults = type(base.params)()
     for name, value in base.params.to_json().items():

@@ -224,11 +224,11 @@ class Transform:
         response = yield from self.response(key)
         size = level_size(self.size, key.level)
         part = np.empty(spectrum_size(size), spectrum.dtype)
-        for here, there in _crop(self.size, size):
+        for here, there in crop_blocks(self.size, size):
             np.multiply(spectrum[there], response[here], out=part[here])
             yield part[here].size // 8
         if key.kind == "oriented":
-            _turn(part, -(self.orientations - 1))
+            quarter_turns(part, -(self.orientations - 1))
         return (yield from fourier.irfft2(part, size))
 
     def empty_sum(self) -> Spectrum:
@@ -248,17 +248,17 @@ class Transform:
             np.multiply(part[rows], response[rows], out=part[rows])
             yield part[rows].size // 8
         if key.kind == "oriented":
-            _turn(part, self.orientations - 1)
+            quarter_turns(part, self.orientations - 1)
         return part
 
     def add_task(self, total: Spectrum, key: BandKey, part: Spectrum) -> Task[None]:
         """Add what :meth:`filtered_task` returned to the spectrum of the collapsed plane."""
-        for here, there in _crop(self.size, level_size(self.size, key.level)):
+        for here, there in crop_blocks(self.size, level_size(self.size, key.level)):
             total[there] += part[here]
             yield part[here].size // 8
 
 
-def _crop(size: Size, crop: Size) -> list[tuple[Any, Any]]:
+def crop_blocks(size: Size, crop: Size) -> list[tuple[Any, Any]]:
     """Return pairs of blocks: the crop's rows of either sign, and where the whole spectrum has them."""
     above, columns = (crop[0] + 1) // 2, slice(0, crop[1] // 2 + 1)
     pairs = []
@@ -269,7 +269,7 @@ def _crop(size: Size, crop: Size) -> list[tuple[Any, Any]]:
     return pairs
 
 
-def _turn(part: Spectrum, quarters: int) -> None:
+def quarter_turns(part: Spectrum, quarters: int) -> None:
     """Multiply by i^quarters, in place."""
     quarters %= 4
     if quarters == 2:

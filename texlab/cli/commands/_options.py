@@ -27,6 +27,18 @@ def parse_size(text: str, name: str = "size") -> tuple[int, int]:
     return int(found[2]), int(found[1])
 
 
+def parse_result_size(text: str, dimensions: int) -> tuple[int, ...]:
+    """Return (height, width) from ``WxH``, or (depth, height, width) from ``WxHxD``; raises ``ParamError``."""
+    if dimensions == 2:
+        return parse_size(text)
+    sides = re.split("[xX×]", text.strip())
+    usable = len(sides) == dimensions and all(re.fullmatch("[0-9]{1,9}", side) and int(side) for side in sides)
+    if not usable:
+        raise ParamError("size", "width, height and depth as in 128x128x128", text)
+    width, height, depth = map(int, sides)
+    return depth, height, width
+
+
 def parse_crop(text: str) -> Crop:
     """Return the rectangle from ``WxH+X+Y``; raises ``ParamError``."""
     found = re.fullmatch(r"([0-9]{1,9}[xX×][0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())

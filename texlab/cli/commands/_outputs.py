@@ -20,11 +20,12 @@ if TYPE_CHECKING:
     from texlab_core.images.formats.writing import Bits
 
 BITS: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
+WRITTEN = "file to write: .png, .tif, .webp or .jpg; for a solid .tif or .npy"
 
 
 def add_output_options(parser: Parser) -> None:
     """Add what ``synth`` and ``redo`` share."""
-    parser.add_argument("--out", required=True, metavar="OUT.png", help="file to write: .png, .tif, .webp or .jpg")
+    parser.add_argument("--out", required=True, metavar="OUT", help=WRITTEN)
     parser.add_argument(
         "--bits", choices=BITS, help="for each sample: 8, 16, or float in a TIFF (default: as the exemplar has)"
     )
@@ -47,11 +48,11 @@ def chosen_bits(args: argparse.Namespace) -> Bits | None:
     return None if args.bits is None else BITS[args.bits]
 
 
-def check_outputs(args: argparse.Namespace, bits: Bits | None) -> Outputs:
+def check_outputs(args: argparse.Namespace, bits: Bits | None, dimensions: int = 2) -> Outputs:
     """Return where to write; raises ``InputError`` when that will not be possible."""
-    from texlab_core.images.formats.writing import check_format
+    from texlab_core.documents.record import check_result_format
 
-    check_format(args.out, 8 if bits is None else bits)
+    check_result_format(args.out, bits, dimensions)
     image = output_file(args.out)
     return Outputs(image, None if args.maps is None else output_folder(args.maps), bits)
 
@@ -62,13 +63,25 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
     from texlab_core.engine.run import run
     from texlab_core.images.formats.writing import can_hold_alpha
 
-    with progress(job.method) as show:
+    with progress(_foretold(job)) as show:
         result = run(job, show, interrupted)
-    alpha = carried_alpha(result) if can_hold_alpha(outputs.image) else None
+    flat = result.volume is None and can_hold_alpha(outputs.image)
+    alpha = carried_alpha(result) if flat else None
     save_result(result, outputs.image, bits=outputs.bits, alpha=alpha)
     if outputs.maps is not None:
         save_maps(result, outputs.maps, spare=[outputs.image, *keep])
     return result
+
+
+def _foretold(job: Job) -> str:
+    """Return the method, with what a run is expected to take where it says so."""
+    from texlab_core.engine.registry import find_method
+
+    estimate = find_method(job.method).estimate
+    if estimate is None:
+        return job.method
+    expected = estimate(job.inputs, job.params, job.size)
+    return f"{job.method}, about {max(1, round(expected.seconds))} s and {expected.nbytes / 1e6:.0f} MB"
 
 
 def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
@@ -82,8 +95,10 @@ def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
 
 def described(result: Result, outputs: Outputs) -> str:
     """Return what was made in a few lines for people."""
-    height, width = result.job.size
-    made = f"{width} x {height} by {result.job.method}, seed {result.job.seed}, in {result.elapsed_s:.2f} s"
+    from texlab_core.engine.sizes import size_text
+
+    job = result.job
+    made = f"{size_text(job.size)} by {job.method}, seed {job.seed}, in {result.elapsed_s:.2f} s"
     read = dict.fromkeys(note for each in result.job.inputs.values() for note in getattr(each, "notes", ()))
     return "\n  ".join([f"{outputs.image}: {made}.", *read, *result.notes, *_saved(result, outputs)])
 
@@ -95,7 +110,7 @@ def _saved(result: Result, outputs: Outputs) -> list[str]:
 
     exemplar = result.job.inputs.get("exemplar")
     said = []
-    if outputs.bits is None:
+    if outputs.bits is None and outputs.image.suffix.lower() != ".npy":
         bits = result_bits(result, outputs.image)
         own = getattr(exemplar, "depth", 8)
         shown = {8: "8 bits", 16: "16 bits", "float": "floats"}

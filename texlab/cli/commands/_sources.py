@@ -1,8 +1,8 @@
-"""What a method works on, from the command line: an image, a texture of the gallery, or a code of 69 numbers."""
+"""What a method works on, from the command line: images, gallery textures, codes, arrays, by their names."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -12,10 +12,11 @@ from texlab_core.errors import InputError, ParamError
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping, Sequence
 
     from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import Crop, ImageInput, Input
-    from texlab_core.engine.registry import Method
+    from texlab_core.engine.registry import InputSpec, Method
 
 CODE_SUFFIX = ".msg.json"
 
@@ -93,27 +94,129 @@ def parse_reading(args: argparse.Namespace) -> Reading:
     )
 
 
-def load_inputs(source: str, method: Method, reading: Reading) -> dict[str, Input]:
+@dataclass(frozen=True)
+class Source:
+    """Where an input comes from, and how an image is read."""
+
+    place: str
+    reading: Reading
+
+
+def add_input_options(parser: Parser) -> None:
+    """Add the options for further inputs by name."""
+    parser.add_argument(
+        "--input",
+        action="append",
+        default=[],
+        metavar="NAME=FILE|gallery:NAME",
+        help="a further input of the method, as in second=gallery:stochastic-rock; texlab methods ID lists them",
+    )
+    parser.add_argument(
+        "--input-scale", action="append", default=[], metavar="NAME=S", help="reduce that input first, 0 < S <= 1"
+    )
+    parser.add_argument(
+        "--input-crop", action="append", default=[], metavar="NAME=WxH+X+Y", help="use this part of that input"
+    )
+
+
+def parse_inputs(args: argparse.Namespace) -> dict[str, Source]:
+    """Return the further inputs that were named; raises ``InputError``."""
+    places = _by_name(args.input, "input", "a name and a source as in second=wall.jpg")
+    scales = _by_name(args.input_scale, "input-scale", "a name and a factor as in second=0.5")
+    crops = _by_name(args.input_crop, "input-crop", "a name and a part as in second=256x192+10+20")
+    for option, given in (("input-scale", scales), ("input-crop", crops)):
+        for name in given:
+            if name not in places:
+                raise InputError(f"--{option} names the input {name}, and --input does not.")
+    return {
+        name: Source(
+            place,
+            Reading(
+                parse_number("input-scale", scales[name], float) if name in scales else 1.0,
+                parse_crop(crops[name]) if name in crops else None,
+            ),
+        )
+        for name, place in places.items()
+    }
+
+
+def _by_name(texts: Sequence[str], option: str, allowed: str) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name or not value:
+            raise ParamError(option, allowed, text)
+        if name in found:
+            raise InputError(f"The input {name} is given twice.")
+        found[name] = value
+    return found
+
+
+def load_inputs(
+    source: str, method: Method, reading: Reading, others: Mapping[str, Source] | None = None
+) -> dict[str, Input]:
     """Return the inputs of a job.
 
     Parameters
     ----------
     source
         An image file, ``gallery:NAME``, or a code ``X.msg.json``.
+    method
+        Whose inputs they are.
     reading
         What is done to an image first.
+    others
+        Further inputs by name.
 
     Raises
     ------
     InputError
-        When it cannot be read, or the method cannot work on it.
+        When one cannot be read, or the method cannot work on it.
     """
-    if not is_code(source):
-        return {"exemplar": reading.read(source)}
-    if not any(spec.name == "code" for spec in method.inputs):
+    specs = {spec.name: spec for spec in method.inputs}
+    first = "code" if is_code(source) else "exemplar"
+    if first not in specs:
         raise InputError(f"{source} is a code of numbers, and {method.title} needs an image; say --method msg.")
-    if reading.scale != 1.0 or reading.crop is not None:
+    if first == "code" and (reading.scale != 1.0 or reading.crop is not None):
         raise InputError(f"{source} is a code of numbers, which can be neither scaled nor cropped.")
-    from texlab_core.methods.spectral.codefile import load_code_input
+    given = {first: Source(source, reading)}
+    for name, other in (others or {}).items():
+        if name not in specs:
+            raise ParamError("input", f"one of {', '.join(specs)} for {method.title}", name)
+        if name in given:
+            raise InputError(f"The input {name} is given twice.")
+        given[name] = Source(other.place, replace(other.reading, background=specs[name].background))
+    return {name: load_input(each, specs[name]) for name, each in given.items()}
 
-    return {"code": load_code_input(Path(source))}
+
+def load_input(source: Source, spec: InputSpec) -> Input:
+    """Return one input, read as its kind wants it; raises ``InputError``."""
+    if spec.kind == "image":
+        return source.reading.read(source.place)
+    if source.reading.scale != 1.0 or source.reading.crop is not None:
+        raise InputError(f"The input {spec.name} is no image: it can be neither scaled nor cropped.")
+    path = Path(source.place)
+    if spec.kind == "arrays":
+        return _load_arrays(path)
+    if spec.read is not None:
+        return spec.read(path)
+    from texlab_core.engine.inputs import DataInput
+    from texlab_core.files import strict_json
+
+    return DataInput(strict_json.load(path, what=f"the input {spec.name}"), path.name)
+
+
+def _load_arrays(path: Path) -> Input:
+    import zipfile
+
+    import numpy as np
+
+    from texlab_core.engine.inputs import ArraysInput
+
+    try:
+        with np.load(path, allow_pickle=False) as held:
+            return ArraysInput({name: held[name] for name in held.files}, path.name)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be opened ({error.strerror or error}).") from error
+    except (AttributeError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: is no .npz file of arrays.") from error

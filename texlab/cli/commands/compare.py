@@ -67,7 +67,7 @@ def execute(args: argparse.Namespace) -> int:
     exemplar = reading.read(args.image)
     jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase)
     cells = len(jobs) + 1
-    check_sheet(cells, columns or series_columns(cells), jobs[0].size)
+    check_sheet(cells, columns or series_columns(cells), jobs[0].picture_size)
     with share_bar(f"{len(jobs)} methods") as show:
         compared = compare(jobs, on_progress=show, should_stop=interrupted)
     write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))

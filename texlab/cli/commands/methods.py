@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Field
     from texlab_core.engine.registry import Method
 
-HELP = "List the synthesis methods, or the parameters of one."
+HELP = "List the synthesis methods, or the inputs and parameters of one."
 ORDER = 20
 
 
@@ -50,7 +50,19 @@ def about(method: Method) -> str:
     parts = [f"{method.title} ({method.id})", _wrap(method.summary), _wrap(method.reference)]
     if method.fails_on:
         parts.append(_wrap("Known to fail on " + "; ".join(method.fails_on).rstrip(".") + "."))
-    return "\n".join(parts) + "\n\n" + knobs(method)
+    return "\n".join(parts) + "\n\n" + inputs(method) + "\n\n" + knobs(method)
+
+
+def inputs(method: Method) -> str:
+    """Return every named input with its kind and help as text, for ``--input NAME=FILE``."""
+    sizes = {2: "width x height", 3: "width x height x depth"}[method.dimensions]
+    lines = [f"makes {sizes} from these inputs, for --input NAME=FILE|gallery:NAME (exemplar: IMAGE):"]
+    files = {"image": "image", "data": "JSON file", "arrays": ".npz file"}
+    for spec in method.inputs:
+        need = "" if spec.required else ", not needed"
+        lines.append(f"  {spec.name} ({files[spec.kind]}{need})")
+        lines.append(_wrap(spec.help, indent=6))
+    return "\n".join(lines)
 
 
 def as_json(method: Method) -> dict[str, Any]:
@@ -68,6 +80,7 @@ def as_json(method: Method) -> dict[str, Any]:
             {"name": spec.name, "kind": spec.kind, "required": spec.required, "help": spec.help}
             for spec in method.inputs
         ],
+        "dimensions": method.dimensions,
         "parameters": [_field_json(field) for field in describe(method.params)],
     }
 

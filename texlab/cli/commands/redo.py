@@ -26,7 +26,7 @@ ORDER = 15
 
 def configure(parser: Parser) -> None:
     """Add the arguments."""
-    parser.add_argument("result", metavar="RESULT.png", help="a result that TexLab saved")
+    parser.add_argument("result", metavar="RESULT", help="a result that TexLab saved")
     parser.add_argument("--exemplar", metavar="IMAGE", help="the exemplar, where the file does not hold it")
     parser.add_argument(
         "--input",
@@ -43,14 +43,15 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.documents.record import read_recipe
 
     recipe = read_recipe(args.result)
-    before = _pixels(args.result)
-    outputs = check_outputs(args, _bits(args, before))
+    dimensions = len(recipe.size)
+    before = _pixels(args.result, dimensions)
+    outputs = check_outputs(args, _bits(args, before, dimensions), dimensions)
     given = _given(args)
     for image in given.values():
         refuse_overwriting(outputs.image, image)
     _check_missing(args.result, recipe, given)
     result = make(recipe.job(given=given), outputs, keep=tuple(given.values()))
-    same = _same_bits(before, outputs)
+    same = _same_bits(before, outputs, dimensions)
     if args.json:
         print(json.dumps(summary_of(result, outputs) | {"same_bits": same}))
     else:
@@ -86,8 +87,12 @@ def _check_missing(name: str, recipe: Recipe, given: Mapping[str, str]) -> None:
         raise RecipeError(f"{name} does not hold {each.described}{remedy}")
 
 
-def _pixels(path: str) -> Decoded | None:
-    """Return the saved image; None for one whose format loses bits, or a recipe without an image."""
+def _pixels(path: str, dimensions: int) -> Decoded | None:
+    """Return the saved image or volume; None where the format loses bits, or for a recipe or a picture alone."""
+    if dimensions == 3:
+        from texlab_core.images.formats.volumes import VOLUME_SUFFIXES, read_volume
+
+        return read_volume(path) if Path(path).suffix.lower() in VOLUME_SUFFIXES else None
     from texlab_core.images.formats.reading import read_image
 
     if Path(path).suffix.lower() not in (".png", ".tif", ".tiff"):
@@ -95,28 +100,28 @@ def _pixels(path: str) -> Decoded | None:
     return read_image(Path(path), path)
 
 
-def _bits(args: argparse.Namespace, before: Decoded | None) -> Bits:
+def _bits(args: argparse.Namespace, before: Decoded | None, dimensions: int) -> Bits | None:
     """Return the depth that was asked for, else that of the result when the new file can hold it."""
-    from texlab_core.images.formats.writing import check_format
+    from texlab_core.documents.record import check_result_format
 
     bits: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
     if args.bits is not None:
         return bits[args.bits]
     if before is None:
-        return 8
+        return None
     depth: Bits = {255: 8, 65535: 16}.get(before.peak, "float")  # type: ignore[assignment, arg-type]
     try:
-        check_format(args.out, depth)
+        check_result_format(args.out, depth, dimensions)
     except ValueError:
-        return 8
+        return None
     return depth
 
 
-def _same_bits(before: Decoded | None, outputs: Outputs) -> bool | None:
+def _same_bits(before: Decoded | None, outputs: Outputs, dimensions: int) -> bool | None:
     """Return whether old and new file hold the same pixels; None when their formats cannot be compared."""
     import numpy as np
 
-    after = _pixels(str(outputs.image))
+    after = _pixels(str(outputs.image), dimensions)
     if before is None or after is None or before.peak != after.peak:
         return None
     return bool(np.array_equal(before.values, after.values))

@@ -72,7 +72,7 @@ def execute(args: argparse.Namespace) -> int:
     source = args.image or (recipe.exemplar.name if recipe.exemplar else "")
     refuse_overwriting(out, source)
     sweep = recipe.sweep(exemplar)
-    check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.size, largest)
+    check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.picture_size, largest)
     with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
         cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
@@ -133,12 +133,14 @@ def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) ->
         failed = sum(bool(cell.error) for cell in cells)
         print(f"{out}: {len(cells)} cells{f', {failed} failed' if failed else ''}")
         return
+    from texlab_core.engine.sizes import size_to_json
+
     base = sweep.base
     exemplar: Any = base.inputs["exemplar"]
     answer = {
         "method": base.method,
         "parameters": base.params.to_json(),
-        "size": {"width": base.size[1], "height": base.size[0]},
+        "size": size_to_json(base.size),
         "seed": base.seed,
         "vary": [{"name": axis.name, "values": list(axis.values)} for axis in sweep.axes],
         "out": out,

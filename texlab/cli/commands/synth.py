@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import (
     parse_number,
+    parse_result_size,
     parse_settings,
-    parse_size,
     refuse_overwriting,
 )
 from texlab.cli.commands._outputs import (
@@ -20,7 +20,13 @@ from texlab.cli.commands._outputs import (
     make,
     summary_of,
 )
-from texlab.cli.commands._sources import add_scale_options, load_inputs, parse_reading
+from texlab.cli.commands._sources import (
+    add_input_options,
+    add_scale_options,
+    load_inputs,
+    parse_inputs,
+    parse_reading,
+)
 
 if TYPE_CHECKING:
     import argparse
@@ -38,11 +44,12 @@ def configure(parser: Parser) -> None:
     parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar, or a code X.msg.json")
     parser.add_argument("--method", required=True, metavar="ID", help="one of texlab methods")
     add_output_options(parser)
-    parser.add_argument("--size", metavar="WxH", help="size of the result (default: the exemplar's)")
+    parser.add_argument("--size", metavar="WxH|WxHxD", help="of the result (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
     add_scale_options(parser, keeps=True)
+    add_input_options(parser)
     parser.more_help = _knobs_of_the_method
 
 
@@ -52,22 +59,25 @@ def execute(args: argparse.Namespace) -> int:
 
     method = find_method(args.method)
     params = method.params.parse(parse_settings(args.set), _base(args))
-    size = None if args.size is None else parse_size(args.size)
+    size = None if args.size is None else parse_result_size(args.size, method.dimensions)
     seed = parse_number("seed", args.seed, int)
     reading = parse_reading(args)
-    outputs = check_outputs(args, chosen_bits(args))
-    refuse_overwriting(outputs.image, args.image)
+    others = parse_inputs(args)
+    outputs = check_outputs(args, chosen_bits(args), method.dimensions)
+    sources = (args.image, *(other.place for other in others.values()))
+    for source in sources:
+        refuse_overwriting(outputs.image, source)
 
     from texlab_core.engine.job import Job
 
     job = Job(
         method=args.method,
-        inputs=load_inputs(args.image, method, reading),
+        inputs=load_inputs(args.image, method, reading, others),
         params=params,
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
     )
-    result = make(job, outputs, keep=(args.image,))
+    result = make(job, outputs, keep=sources)
     print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
     return 0
 

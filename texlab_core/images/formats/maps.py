@@ -68,7 +68,7 @@ def save_maps(
     for name, each in result.maps.items():
         stem = _stem(name)
         contents[f"{stem}.npy"] = _npy(each.data)
-        contents[f"{stem}.png"] = encode_png(picture(each, extent))
+        contents[f"{stem}.png"] = encode_png(picture(each.plane, extent))
         index["maps"][name] = _describe(each, stem)
     for name, curve in result.curves.items():
         stem = _stem(name)

@@ -283,8 +283,18 @@ register(
             InputSpec(
                 "start", "An image to fill or to extend; the exemplar when only a mask is given.", required=False
             ),
-            InputSpec("mask", "What is not black is to be filled; as large as the start image.", required=False),
-            InputSpec("region", "What is not black may be copied; as large as the exemplar.", required=False),
+            InputSpec(
+                "mask",
+                "What is not black is to be filled; as large as the start image.",
+                required=False,
+                background=0.0,
+            ),
+            InputSpec(
+                "region",
+                "What is not black may be copied; as large as the exemplar.",
+                required=False,
+                background=0.0,
+            ),
             InputSpec("state", "Where a stopped or finished run stood, to go on from.", "arrays", required=False),
         ),
         fails_on=(

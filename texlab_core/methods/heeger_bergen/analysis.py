@@ -92,8 +92,8 @@ class TextureModel:
         """Number of channels of the exemplar."""
         return len(self.palette)
 
-    def to_image(self, planes: Sequence[NDArray[np.float32]], size: tuple[int, int]) -> Task[FloatImage]:
-        """Return the image (H, W, C) of planes; not clipped."""
+    def to_image(self, planes: Sequence[NDArray[np.float32]], size: tuple[int, ...]) -> Task[FloatImage]:
+        """Return the image (H, W, C) of planes (H, W), or the volume of planes (D, H, W); not clipped."""
         if self.axes is not None and planes:
             return (yield from self.axes.from_axes(planes))
         if planes:

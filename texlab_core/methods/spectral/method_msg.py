@@ -23,6 +23,7 @@ from texlab_core.methods.spectral.told import ENERGY_ERROR, PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Generator
+    from pathlib import Path
 
     from texlab_core.engine.inputs import Inputs
     from texlab_core.engine.steps import Curve, Step
@@ -208,6 +209,13 @@ def _notes(code: MsgCode, plan: Design) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def read_code_input(path: Path) -> DataInput:
+    """Read a file as the input ``code``, checked."""
+    from texlab_core.methods.spectral.codefile import load_code_input
+
+    return load_code_input(path)
+
+
 register(
     Method(
         id="msg",
@@ -225,7 +233,13 @@ register(
         ),
         inputs=(
             InputSpec("exemplar", "The texture to measure.", required=False),
-            InputSpec("code", "A code of 69 numbers, instead of an exemplar.", kind="data", required=False),
+            InputSpec(
+                "code",
+                "A code of 69 numbers, instead of an exemplar.",
+                kind="data",
+                required=False,
+                read=read_code_input,
+            ),
         ),
         check=check,
         order=40,

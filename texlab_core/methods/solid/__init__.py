@@ -1,0 +1,1 @@
+"""Solid textures after Heeger and Bergen: a block that can be cut anywhere."""

@@ -1,0 +1,203 @@
+"""Solid textures after Heeger and Bergen: a block of noise is given the exemplar's histograms, scale by scale.
+
+Reference: D. Heeger and J. Bergen, "Pyramid-based texture analysis/synthesis", SIGGRAPH 1995, section 3.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.params import Knob, Params
+from texlab_core.engine.registry import Estimate, Method, register
+from texlab_core.engine.steps import Step
+from texlab_core.errors import ParamError
+from texlab_core.methods.heeger_bergen import analysis
+from texlab_core.work.tasks import Pace, crew
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.steps import Output
+    from texlab_core.engine.streams import Streams
+    from texlab_core.methods.heeger_bergen.analysis import TextureModel
+
+MAX_SIDE = 256
+
+# Samples worked through between two steps.
+STRIDE = 2**16
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidParams(Params):
+    """Parameters of solid textures."""
+
+    iterations: Annotated[
+        int,
+        Knob(
+            help="Rounds of matching all subbands, then the voxels; 0 leaves noise of the exemplar's colours.",
+            low=0,
+            high=20,
+            linear_to=10,
+            group="Synthesis",
+            source="Heeger and Bergen 1995, section 2.3",
+        ),
+    ] = 5
+    histograms: Annotated[
+        Literal["pooled", "per-slice"],
+        Knob(
+            help="Over what the histogram of a slice's subband is taken.",
+            choices={
+                "pooled": "over all slices across an axis; what is coarser than all bands is left as it is",
+                "per-slice": "over each slice alone, the coarsest part too: this leaves streaks along the axes",
+            },
+            group="Synthesis",
+            source="Heeger and Bergen 1995, section 3",
+            when=("kind", ("mixed",)),
+        ),
+    ] = "pooled"
+    kind: Annotated[
+        Literal["laplacian", "mixed"],
+        Knob(
+            help="The subbands whose histograms are matched.",
+            choices={
+                "laplacian": "the scales of the solid: quick; grain without direction",
+                "mixed": "also the scales and orientations of all its slices along the three axes",
+            },
+            stage="analysis",
+            group="Pyramid",
+            source="Heeger and Bergen 1995, section 3",
+        ),
+    ] = "laplacian"
+    scales: Annotated[
+        int,
+        Knob(
+            help="Levels of the pyramids; structure larger than about 2^scales voxels is lost.",
+            low=0,
+            high=7,
+            stage="analysis",
+            group="Pyramid",
+        ),
+    ] = 4
+    orientations: Annotated[
+        int,
+        Knob(
+            help="Oriented bands at each level of the slices.",
+            low=1,
+            high=18,
+            stage="analysis",
+            group="Pyramid",
+            when=("kind", ("mixed",)),
+        ),
+    ] = 4
+    border: Annotated[
+        Literal["reflect", "periodic", "wrap"],
+        Knob(
+            help="How the exemplar is taken to go on beyond its borders.",
+            choices={
+                "reflect": "mirrored",
+                "periodic": "repeated, without the smooth part that makes it jump at the borders",
+                "wrap": "repeated as it is: jumps at the borders look like texture",
+            },
+            stage="analysis",
+            group="Pyramid",
+            source="Heeger and Bergen 1995, section 2.4",
+        ),
+    ] = "reflect"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolidModel:
+    """The exemplar's histograms.
+
+    Parameters
+    ----------
+    solid
+        Of the Laplacian pyramid of every colour axis.
+    slices
+        Of the steerable pyramid; None for solids of the kind ``laplacian``.
+    """
+
+    solid: TextureModel
+    slices: TextureModel | None
+
+
+def check(inputs: Inputs, params: SolidParams, size: tuple[int, ...]) -> None:
+    """Refuse sides above 256 voxels."""
+    if max(size) > MAX_SIDE:
+        depth, height, width = size
+        raise ParamError("size", f"at most {MAX_SIDE} voxels a side", f"{width} x {height} x {depth}")
+
+
+def estimate(inputs: Inputs, params: SolidParams, size: tuple[int, ...]) -> Estimate:
+    """Foretell time and memory from the number of voxels."""
+    axes = exemplar_of(inputs).channels
+    samples = math.prod(size)
+    sides = params.orientations if params.kind == "mixed" else 0
+    # Microseconds for a voxel, on one core of an ordinary machine.
+    seconds = axes * samples * (0.1 + params.iterations * (0.06 + (0.06 * sides + 0.1 if sides else 0))) * 1e-6
+    # Volumes of floats that are there at the same time: the planes, the image, and those of two axes at work.
+    volumes = 3 * axes + min(axes, 2) * (12 if sides else 6)
+    return Estimate(seconds, 4 * samples * volumes)
+
+
+def analyze(inputs: Inputs, params: SolidParams) -> Generator[Step, None, SolidModel]:
+    """Sort the pixels and the subbands of every colour axis."""
+    image = exemplar_of(inputs).pixels
+    pyramids: list[analysis.Pyramid] = ["laplacian", "steerable"] if params.kind == "mixed" else ["laplacian"]
+    mirrored = 4 if params.border == "reflect" else 1
+    totals = {"laplacian": 6 * image.size, "steerable": image.size * mirrored * (8 * params.orientations // 3 + 4)}
+    total, models = sum(totals[each] for each in pyramids), []
+    with crew() as team:
+        for index, pyramid in enumerate(pyramids):
+            done = sum(totals[each] for each in pyramids[:index])
+            most = done + totals[pyramid]
+
+            def step(samples: int, most: int = most) -> Step:
+                nonlocal done
+                done = min(done + samples, most)
+                return Step(done, total, "pyramid of the exemplar")
+
+            work = analysis.analyze(image, pyramid, params.scales, params.orientations, params.border, team)
+            models.append((yield from Pace(STRIDE).steps(work, step)))
+    return SolidModel(models[0], models[1] if len(models) == 2 else None)
+
+
+def synthesize(
+    model: SolidModel, inputs: Inputs, params: SolidParams, size: tuple[int, int, int], streams: Streams
+) -> Generator[Step, None, Output]:
+    """Make a solid from noise."""
+    from texlab_core.methods.solid.synthesis import Synthesis
+
+    with crew() as team:
+        work = Synthesis(model, inputs, params, size, streams, team)
+        yield from work.start()
+        for iteration in range(params.iterations):
+            yield from work.iterate(iteration)
+        return (yield from work.finish())
+
+
+register(
+    Method(
+        id="solid",
+        title="Solid texture",
+        summary="A block of noise is given the exemplar's histograms in every subband; it can be cut anywhere.",
+        reference="D. Heeger and J. Bergen, Pyramid-based texture analysis/synthesis, SIGGRAPH 1995, section 3",
+        params=SolidParams,
+        analyze=analyze,
+        synthesize=synthesize,
+        check=check,
+        estimate=estimate,
+        rehearsals=(SolidParams(kind="mixed", iterations=1),),
+        fails_on=(
+            "shapes: slices have the exemplar's colours and grain, not its outlines",
+            "exemplars with one direction, such as wood grain: no solid has it in all slices",
+            "structure larger than 2^scales voxels",
+        ),
+        dimensions=3,
+        order=12,
+    )
+)

@@ -1,0 +1,1 @@
+"""Solids to look at: drawn as objects, cut into slices, turned and walked through."""
