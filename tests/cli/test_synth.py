@@ -23,6 +23,7 @@ from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.png_text import read_text
 from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.formats.writing import write_image
 
 if TYPE_CHECKING:
@@ -324,10 +325,20 @@ def test_redo_refuses_files_without_a_recipe(texlab: Texlab, ramp: Path) -> None
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(registry.methods()))
 def test_every_method_can_be_redone(texlab: Texlab, name: str) -> None:
-    options = ("--crop", "48x40+10+20", "--size", "32x24", "--seed", "5")
-    made = texlab("synth", "gallery:structured-pebbles", "--method", name, "--out", "a.png", *options)
+    method = registry.find_method(name)
+    options = ["--crop", "48x40+10+20", "--size", "32x24" if method.dimensions == 2 else "32x24x10", "--seed", "5"]
+    for spec in method.inputs:
+        if spec.required and spec.name != "exemplar":
+            options += [
+                "--input",
+                f"{spec.name}=gallery:stochastic-rock",
+                "--input-crop",
+                f"{spec.name}=40x48+7+9",
+            ]
+    suffix, read = {2: (".png", read_image), 3: (".tif", lambda path, _: read_volume(path))}[method.dimensions]
+    made = texlab("synth", "gallery:structured-pebbles", "--method", name, "--out", f"a{suffix}", *options)
     assert (made.code, made.err) == (0, "")
-    assert json.loads(texlab("redo", "a.png", "--out", "b.png", "--json").out)["same_bits"] is True
-    one, other = (read_image(Path(each), each).values for each in ("a.png", "b.png"))
+    assert json.loads(texlab("redo", f"a{suffix}", "--out", f"b{suffix}", "--json").out)["same_bits"] is True
+    one, other = (read(Path(each), each).values for each in (f"a{suffix}", f"b{suffix}"))
     np.testing.assert_array_equal(one, other)
     assert list(itertools.chain(Path().glob(".texlab*"), Path().glob("*.tmp"))) == []

@@ -70,6 +70,17 @@ def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
         raise RecipeError(f"{source}: cannot be opened ({reason}).") from error
 
 
+def recipe_text(path: str | os.PathLike[str]) -> str | None:
+    """Return the recipe of a saved result as it is written there; None when the file holds none."""
+    try:
+        read_recipe(path)
+    except NoRecipeError:
+        return None
+    with open(path, "rb") as file:
+        text = _find(file, Path(path), Path(path).name)
+    return text.decode() if isinstance(text, bytes) else text
+
+
 def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
     """Return the text of the recipe, wherever the format keeps it."""
     head = file.read(16)

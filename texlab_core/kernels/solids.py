@@ -252,7 +252,7 @@ def draw(
                     t = -1.0
                 nx, ny, nz = (ox + t * dx) / RADIUS, (oy + t * dy) / RADIUS, (oz + t * dz) / RADIUS
             elif shape == CYLINDER:
-                t, nx, ny, nz, part = _hit_cylinder(ox, oy, oz, dx, dy, dz, hy)
+                t, nx, ny, nz, part = _hit_cylinder(ox, oy, oz, dx, dy, dz, RADIUS * hy)
             else:
                 t, nx, ny, nz, part = _hit_torus(ox, oy, oz, dx, dy, dz)
             if t <= 0.0:

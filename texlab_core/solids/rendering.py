@@ -208,7 +208,7 @@ def _reach(shape: Shape, half: NDArray[np.float64]) -> float:
     radius = {
         "block": math.hypot(*half),
         "sphere": solids.RADIUS,
-        "cylinder": math.hypot(solids.RADIUS, half[1]),
+        "cylinder": solids.RADIUS * math.hypot(1, half[1]),
         "torus": solids.RING + solids.TUBE,
     }[shape]
     return radius / math.sqrt(1 - (radius / DISTANCE) ** 2)

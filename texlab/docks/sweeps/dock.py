@@ -165,7 +165,7 @@ class SweepsDock(FramedDock):
             return
         if is_new:
             columns = len(sweep.axes[0].values) if len(sweep.axes) == 2 else None
-            count, size = len(sweep.jobs), sweep.base.size
+            count, size = len(sweep.jobs), sweep.base.picture_size
             if self._fits:
                 # Until the user chooses a size.
                 self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size)))

@@ -6,15 +6,15 @@ Reference: D. Heeger and J. Bergen, "Pyramid-based texture analysis/synthesis", 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING
 
 from texlab_core.engine.inputs import exemplar_of
-from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Estimate, Method, register
 from texlab_core.engine.steps import Step
 from texlab_core.errors import ParamError
 from texlab_core.methods.heeger_bergen import analysis
+from texlab_core.methods.solid.params import SolidParams
+from texlab_core.methods.solid.rounds import SolidModel
 from texlab_core.work.tasks import Pace, crew
 
 if TYPE_CHECKING:
@@ -23,106 +23,11 @@ if TYPE_CHECKING:
     from texlab_core.engine.inputs import Inputs
     from texlab_core.engine.steps import Output
     from texlab_core.engine.streams import Streams
-    from texlab_core.methods.heeger_bergen.analysis import TextureModel
 
 MAX_SIDE = 256
 
 # Samples worked through between two steps.
 STRIDE = 2**16
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolidParams(Params):
-    """Parameters of solid textures."""
-
-    iterations: Annotated[
-        int,
-        Knob(
-            help="Rounds of matching all subbands, then the voxels; 0 leaves noise of the exemplar's colours.",
-            low=0,
-            high=20,
-            linear_to=10,
-            group="Synthesis",
-            source="Heeger and Bergen 1995, section 2.3",
-        ),
-    ] = 5
-    histograms: Annotated[
-        Literal["pooled", "per-slice"],
-        Knob(
-            help="Over what the histogram of a slice's subband is taken.",
-            choices={
-                "pooled": "over all slices across an axis; what is coarser than all bands is left as it is",
-                "per-slice": "over each slice alone, the coarsest part too: this leaves streaks along the axes",
-            },
-            group="Synthesis",
-            source="Heeger and Bergen 1995, section 3",
-            when=("kind", ("mixed",)),
-        ),
-    ] = "pooled"
-    kind: Annotated[
-        Literal["laplacian", "mixed"],
-        Knob(
-            help="The subbands whose histograms are matched.",
-            choices={
-                "laplacian": "the scales of the solid: quick; grain without direction",
-                "mixed": "also the scales and orientations of all its slices along the three axes",
-            },
-            stage="analysis",
-            group="Pyramid",
-            source="Heeger and Bergen 1995, section 3",
-        ),
-    ] = "laplacian"
-    scales: Annotated[
-        int,
-        Knob(
-            help="Levels of the pyramids; structure larger than about 2^scales voxels is lost.",
-            low=0,
-            high=7,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 4
-    orientations: Annotated[
-        int,
-        Knob(
-            help="Oriented bands at each level of the slices.",
-            low=1,
-            high=18,
-            stage="analysis",
-            group="Pyramid",
-            when=("kind", ("mixed",)),
-        ),
-    ] = 4
-    border: Annotated[
-        Literal["reflect", "periodic", "wrap"],
-        Knob(
-            help="How the exemplar is taken to go on beyond its borders.",
-            choices={
-                "reflect": "mirrored",
-                "periodic": "repeated, without the smooth part that makes it jump at the borders",
-                "wrap": "repeated as it is: jumps at the borders look like texture",
-            },
-            stage="analysis",
-            group="Pyramid",
-            source="Heeger and Bergen 1995, section 2.4",
-        ),
-    ] = "reflect"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SolidModel:
-    """The exemplar's histograms.
-
-    Parameters
-    ----------
-    solid
-        Of the Laplacian pyramid of every colour axis.
-    slices
-        Of the steerable pyramid; None for solids of the kind ``laplacian``.
-    """
-
-    solid: TextureModel
-    slices: TextureModel | None
 
 
 def check(inputs: Inputs, params: SolidParams, size: tuple[int, ...]) -> None:

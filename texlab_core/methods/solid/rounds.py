@@ -25,7 +25,7 @@ from texlab_core.work.tasks import row_blocks
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from texlab_core.methods.heeger_bergen.analysis import PlaneModel
+    from texlab_core.methods.heeger_bergen.analysis import PlaneModel, TextureModel
     from texlab_core.work.tasks import Task
 
 Volume = NDArray[np.float32]
@@ -53,6 +53,22 @@ class AxisModel:
 
     solid: PlaneModel
     slices: PlaneModel | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolidModel:
+    """The exemplar's histograms.
+
+    Parameters
+    ----------
+    solid
+        Of the Laplacian pyramid of every colour axis.
+    slices
+        Of the steerable pyramid; None for solids of the kind ``laplacian``.
+    """
+
+    solid: TextureModel
+    slices: TextureModel | None
 
 
 @dataclass(frozen=True, slots=True)

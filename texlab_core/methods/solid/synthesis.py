@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from texlab_core.engine.inputs import Inputs
     from texlab_core.engine.steps import FloatImage, FloatVolume
     from texlab_core.engine.streams import Streams
-    from texlab_core.methods.solid.method import SolidModel, SolidParams
+    from texlab_core.methods.solid.params import SolidParams
+    from texlab_core.methods.solid.rounds import SolidModel
     from texlab_core.work.tasks import Crew, Task
 
 ReturnT = TypeVar("ReturnT")
