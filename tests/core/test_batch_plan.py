@@ -108,6 +108,11 @@ def test_sizes(text: str, size: tuple[int, int]) -> None:
     assert SizeRule(text).of((10, 13)) == size
 
 
+@pytest.mark.parametrize(("text", "size"), [("6x5x4", (4, 5, 6)), ("1x", (10, 10, 10)), ("0.5x", (5, 5, 5))])
+def test_sizes_of_solids(text: str, size: tuple[int, ...]) -> None:
+    assert SizeRule(text).of((10, 13), 3) == size
+
+
 def test_presets_and_settings(folder: Path) -> None:
     own = PresetStore(folder / "own")
     own.save(Preset(name="rough", method="de-bonet", parameters={"alpha": 0.3}))

@@ -26,6 +26,7 @@ from texlab_core.engine.job import Job
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.formats.writing import quantize
 from texlab_core.measures.registry import measure_quick
 from texlab_core.measures.subject import Subject
@@ -61,6 +62,21 @@ def test_a_picture_carries_its_recipe(tmp_path: Path) -> None:
     recipe = read_recipe(tmp_path / "out" / row.picture)
     assert (recipe.method, recipe.seed, recipe.size) == ("heeger-bergen", 7, (12, 20))
     assert recipe.job().inputs["exemplar"].sha256 == plan.exemplars[0].load().sha256
+
+
+def test_solids_are_kept_as_stacks(tmp_path: Path) -> None:
+    plan = small_plan(
+        tmp_path, inputs=["in/photo-0.png"], methods=["solid", "tiling"], seeds=[3], sizes=["7x6x5"], bits=16
+    )
+    row, refused = run_batch(plan, tmp_path / "out").rows
+    assert (row.size, row.picture[-4:]) == ("7x6x5", ".tif")
+    assert "size: must be height and width" in refused.error
+    alone = synthesize(tmp_path / "in/photo-0.png", "solid", size=(5, 6, 7), seed=3)
+    kept = read_volume(tmp_path / "out" / row.picture).values
+    assert np.array_equal(kept, quantize(alone.volume, 65535))
+    assert read_recipe(tmp_path / "out" / row.picture).size == (5, 6, 7)
+    first, _ = csv.DictReader(io.StringIO((tmp_path / "out" / "report.csv").read_text("utf-8")))
+    assert first["depth"] == "5"
 
 
 def test_sixteen_bits(tmp_path: Path) -> None:

@@ -142,7 +142,7 @@ class BatchFolder:
             "version": VERSION,
             "job": key,
             **about,
-            "picture": f"{PICTURES}/{stem}.png",
+            "picture": f"{PICTURES}/{stem}{picture.suffix}",
             "thumbnail": f"{THUMBNAILS}/{stem}.png",
             "bytes": len(picture.png),
             "pixels_sha256": picture.sha256,

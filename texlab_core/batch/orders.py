@@ -50,7 +50,7 @@ class Order:
     key: str
     method: str
     params: Mapping[str, Any]
-    size: tuple[int, int]
+    size: tuple[int, ...]
     seed: int
     slips: Mapping[str, Slip]
     versions: Mapping[str, str]

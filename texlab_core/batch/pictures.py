@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.reading import KEY
 from texlab_core.documents.recipe import recipe_json
+from texlab_core.images.formats.volumes import encode_volume
 from texlab_core.images.formats.writing import encode_image, encode_png, quantize
 from texlab_core.measures.registry import measure_quick
 from texlab_core.measures.subject import Subject
@@ -31,7 +32,7 @@ class Picture:
     Parameters
     ----------
     png
-        The file with its recipe.
+        The file with its recipe: a PNG, or the TIFF stack of a solid.
     thumbnail
         A small PNG, its longest side at most 128 pixels.
     sha256
@@ -42,6 +43,8 @@ class Picture:
         What is wrong with it, one sentence each.
     notes
         What was done to the input.
+    suffix
+        Of the file.
     """
 
     png: bytes
@@ -50,15 +53,22 @@ class Picture:
     measures: Mapping[str, float | None] = field(default_factory=dict)
     findings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    suffix: str = ".png"
 
 
 def finish(result: Result, *, bits: Bits = 8) -> Picture:
     """Return what is kept of a result."""
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
-    digest = hashlib.sha256(f"{result.image.shape}".encode())
-    digest.update(result.image.tobytes())
+    whole = result.image if result.volume is None else result.volume
+    digest = hashlib.sha256(f"{whole.shape}".encode())
+    digest.update(whole.tobytes())
+    if result.volume is None:
+        suffix, file = ".png", encode_image("result.png", result.image, bits=bits, text={KEY: recipe})
+    else:
+        suffix, file = ".tif", encode_volume("result.tif", result.volume, bits=bits, info=recipe)
     return Picture(
-        png=encode_image("result.png", result.image, bits=bits, text={KEY: recipe}),
+        png=file,
+        suffix=suffix,
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
         measures=dict(measure_quick(Subject.of_result(result))),

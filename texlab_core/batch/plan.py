@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.choices import ExemplarChoice, choices_of
 from texlab_core.documents.preset_store import PresetStore, find_preset
-from texlab_core.engine.job import check_seed, check_size
+from texlab_core.engine.job import check_seed
 from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import check_size, default_size
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.resources import resource
@@ -51,7 +52,7 @@ class SizeRule:
     Parameters
     ----------
     text
-        ``WxH``, or a factor as in ``2x``.
+        ``WxH``, ``WxHxD`` for solids, or a factor as in ``2x``.
     """
 
     text: str
@@ -59,16 +60,20 @@ class SizeRule:
     def __post_init__(self) -> None:
         self.of((2, 2))
 
-    def of(self, exemplar: tuple[int, int]) -> tuple[int, int]:
-        """Return height and width for an exemplar of this height and width."""
-        if fixed := re.fullmatch(r"([0-9]{1,9})[x×]([0-9]{1,9})", self.text):
-            return check_size((int(fixed[2]), int(fixed[1])))
+    def of(self, exemplar: tuple[int, int], dimensions: int = 2) -> tuple[int, ...]:
+        """Return the size of a result of so many dimensions for an exemplar of this height and width."""
+        if fixed := re.fullmatch(r"([0-9]{1,9})[x×]([0-9]{1,9})(?:[x×]([0-9]{1,9}))?", self.text):
+            width, height, depth = (None if side is None else int(side) for side in fixed.groups())
+            size = (height, width) if depth is None else (depth, height, width)
+            return check_size(size, len(size))
         if factor := re.fullmatch(r"([0-9]{1,4}(?:\.[0-9]{1,6})?)x", self.text):
             times = float(factor[1])
             if times > 0:
-                return check_size((max(1, round(exemplar[0] * times)), max(1, round(exemplar[1] * times))))
+                sides = default_size(exemplar, dimensions)
+                return check_size(tuple(max(1, round(side * times)) for side in sides), dimensions)
         raise PlanError(
-            "sizes: must be width and height as in 256x192, or a factor of the exemplar's sides as in 2x, "
+            "sizes: must be width and height as in 256x192 (and depth for a solid), or a factor of the exemplar's "
+            "sides as in 2x, "
             f"got {strict_json.shorten(self.text)}."
         )
 

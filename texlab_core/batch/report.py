@@ -18,7 +18,19 @@ if TYPE_CHECKING:
     from texlab_core.batch.plan import Plan
 
 TABLE, PAGE = "report.csv", "index.html"
-_COLUMNS = ("input", "part", "variant", "method", "parameters", "width", "height", "seed", "picture", "job")
+_COLUMNS = (
+    "input",
+    "part",
+    "variant",
+    "method",
+    "parameters",
+    "width",
+    "height",
+    "depth",
+    "seed",
+    "picture",
+    "job",
+)
 
 
 def table_of(rows: Sequence[Row]) -> str:
@@ -31,7 +43,8 @@ def table_of(rows: Sequence[Row]) -> str:
         about = row.about
         size = about.get("size") or {"width": "", "height": ""}
         cells: list[Any] = [about["input"], about["part"], about["variant"], about["method"]]
-        cells += [json.dumps(about["parameters"], sort_keys=True), size["width"], size["height"], about["seed"]]
+        cells += [json.dumps(about["parameters"], sort_keys=True), size["width"], size["height"]]
+        cells += [size.get("depth", ""), about["seed"]]
         cells += [row.picture, row.job]
         cells += ["" if (value := (row.measures or {}).get(name)) is None else repr(value) for name in names]
         cells += [" ".join(row.findings), row.error]

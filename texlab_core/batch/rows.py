@@ -70,9 +70,9 @@ class Row:
 
     @property
     def size(self) -> str:
-        """Width and height, or the plan's rule when the exemplar could not be read."""
+        """Width and height (and depth), or the plan's rule when the exemplar could not be read."""
         size = self.about.get("size")
-        return f"{size['width']}x{size['height']}" if size else str(self.about["size_rule"])
+        return "x".join(str(side) for side in size.values()) if size else str(self.about["size_rule"])
 
 
 def measure_names(rows: Sequence[Row]) -> tuple[str, ...]:

@@ -20,6 +20,8 @@ from texlab_core.batch.processes import Processes
 from texlab_core.batch.report import write_report
 from texlab_core.batch.rows import Row
 from texlab_core.engine.job import Job
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import size_text, size_to_json
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -211,8 +213,8 @@ class _Run:
         for place, variant, seed, rule in jobs:
             about = _about(choice, variant, seed, rule.text, exemplar) | {"exemplar_thumbnail": small}
             try:
-                size = rule.of(exemplar.size)
-                about["size"] = {"width": size[1], "height": size[0]}
+                size = rule.of(exemplar.size, find_method(variant.method).dimensions)
+                about["size"] = size_to_json(size)
                 job = Job(
                     method=variant.method,
                     inputs={"exemplar": exemplar},
@@ -237,7 +239,7 @@ class _Run:
                 self.forecast.drop()
                 continue
             name = os.path.splitext(choice.name.removeprefix("gallery:"))[0]
-            stem = f"{name}-{variant.name}-{size[1]}x{size[0]}-{seed}"
+            stem = f"{name}-{variant.name}-{size_text(size, 'x')}-{seed}"
             self.waiting[order.key] = (place, stem, about)
             yield order, parcels
 

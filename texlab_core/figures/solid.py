@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,7 @@ SIDE = 64
 PAPER = (255, 255, 255)
 
 
-def _volume(name: str, **values: object) -> FloatVolume:
+def _volume(name: str, **values: Any) -> FloatVolume:
     volume = make("solid", texture(name, 96), SIDE, **values).volume
     assert volume is not None
     return volume
