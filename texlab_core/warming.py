@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from texlab_core.engine.job import Job
-from texlab_core.engine.registry import find_method, methods
+from texlab_core.engine.registry import EXEMPLAR, find_method, methods
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
@@ -25,11 +25,14 @@ from texlab_core.stats import histogram
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from texlab_core.engine.inputs import Input
+
 log = logging.getLogger(__name__)
 
-EXEMPLAR = (48, 48)
+SIDES = (48, 48)
 # Another size than the exemplar's, short and long: some methods take a short cut where sizes agree or are small.
 OUTPUT = (32, 72)
+DEPTH = 8
 # Whoever waits asks this often whether to go on.
 PATIENCE_S = 0.01
 
@@ -55,9 +58,12 @@ def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
         When ``should_stop`` said so, between two steps of a run.
     """
     method = find_method(need.method)
-    exemplar = as_exemplar(Streams(0)("warm up").random((*EXEMPLAR, need.channels), np.float32))
+    exemplar = as_exemplar(Streams(0)("warm up").random((*SIDES, need.channels), np.float32))
+    inputs: dict[str, Input] = {EXEMPLAR.name: exemplar}
+    inputs |= {spec.name: exemplar for spec in method.inputs if spec.required and spec.kind == "image"}
+    size = (*(DEPTH,) * (method.dimensions - 2), *OUTPUT)
     for params in (method.params(), *method.rehearsals):
-        job = Job(method=method.id, inputs={"exemplar": exemplar}, params=params, size=OUTPUT)
+        job = Job(method=method.id, inputs=inputs, params=params, size=size)
         run(job, should_stop=should_stop, threads=1)
     # Large planes are sorted in pieces, by kernels that no tiny run needs.
     histogram.warm_up()

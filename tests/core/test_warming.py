@@ -79,13 +79,14 @@ for method in methods().values():
                 continue
     for exemplar in (as_exemplar(pixels), as_exemplar(pixels[..., :1])):
         for params in variants:
-            for size in ((70, 90), (80, 64)):
+            for size in ((70, 90), (80, 64)) if method.dimensions == 2 else ((20, 24, 28), (9, 32, 20)):
+                inputs = {spec.name: exemplar for spec in method.inputs if spec.required} | {"exemplar": exemplar}
                 try:
-                    run(Job(method=method.id, inputs={"exemplar": exemplar}, params=params, size=size), threads=1)
+                    run(Job(method=method.id, inputs=inputs, params=params, size=size), threads=1)
                 except InputError:
                     continue
         if method.draft is not None:
-            method.draft({"exemplar": exemplar}, method.params(), (80, 64), 1)
+            method.draft(inputs, method.params(), size, 1)
     print(method.id, sorted(loaded() - before))
     assert loaded() <= before, method.id
 """
