@@ -52,7 +52,7 @@ def test_voxels_have_the_exemplars_values(kind: str) -> None:
     assert result.volume is not None
     # As many voxels as pixels: the very same values.
     np.testing.assert_array_equal(sorted_sample(result.volume), sorted_sample(exemplar.pixels))
-    assert result.measures["w1-pixels"] == 0
+    assert result.measures["w1-voxels"] == 0
 
 
 def test_another_number_of_voxels_takes_the_resampled_values() -> None:

@@ -52,7 +52,14 @@ def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> J
             )
             inputs[spec.name] = texture(21, 26, exemplar.channels)
     given: dict[str, Any] = {"method": method.id, "inputs": inputs} | changes
+    if given.get("size") is not None:
+        given["size"] = size_for(method, given["size"])
     return Job(**given)
+
+
+def size_for(method: Method, size: tuple[int, int]) -> tuple[int, ...]:
+    """Return a size as the method takes it: with a small depth before it for a method of three dimensions."""
+    return (*(5,) * (method.dimensions - 2), *size)
 
 
 def check_image(image: FloatImage, shape: tuple[int, ...], what: str) -> None:

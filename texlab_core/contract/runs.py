@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.contract.cases import Broken, check_image, check_sentence, job, promise, texture
+from texlab_core.contract.cases import Broken, check_image, check_sentence, job, promise, size_for, texture
 from texlab_core.contract.declarations import settings
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.run import run
+from texlab_core.engine.sizes import default_size
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 
@@ -37,7 +38,9 @@ def watched(given: Job, **options: Any) -> tuple[Result, list[Step]]:
         if step.preview is not None:
             preview = step.preview()
             exemplar: Any = given.inputs["exemplar"]
-            check_image(preview, (*given.size, exemplar.channels), f"the preview of the step {step.stage!r}")
+            check_image(
+                preview, (*given.picture_size, exemplar.channels), f"the preview of the step {step.stage!r}"
+            )
             if preview.flags.writeable:
                 preview[:] = 0.5
 
@@ -47,6 +50,8 @@ def watched(given: Job, **options: Any) -> tuple[Result, list[Step]]:
 def promise_same_bits(one: Result, other: Result, when: str) -> None:
     """Check that two results of one job are the same, to the last bit."""
     promise(np.array_equal(one.image, other.image), f"the image differs {when}.")
+    if one.volume is not None and other.volume is not None:
+        promise(np.array_equal(one.volume, other.volume), f"the volume differs {when}.")
     promise(one.maps.keys() == other.maps.keys(), f"the maps differ {when}.")
     promise(one.measures == other.measures, f"the measures differ {when}.")
     promise(one.notes == other.notes, f"the notes differ {when}.")
@@ -187,12 +192,20 @@ def check_outputs(method: Method) -> None:
     for channels in (1, 3):
         for size in ((24, 32), (50, 17), (9, 64)):
             exemplar = texture(24, 32, channels)
-            promise_output(run(job(method, exemplar, size=size)), size, exemplar.pixels.shape)
+            promise_output(run(job(method, exemplar, size=size)), size_for(method, size), exemplar.pixels.shape)
 
 
-def promise_output(result: Result, size: tuple[int, int], exemplar: tuple[int, ...]) -> None:
+def promise_output(result: Result, size: tuple[int, ...], exemplar: tuple[int, ...]) -> None:
     """Check everything that a result holds."""
-    check_image(result.image, (*size, exemplar[2]), "the image")
+    check_image(result.image, (*size[-2:], exemplar[2]), "the image")
+    if len(size) == 3:
+        promise(result.volume is not None, "a method of three dimensions must return a volume.")
+        assert result.volume is not None
+        check_image(result.volume, (*size, exemplar[2]), "the volume")
+        shown = np.array_equal(result.image, result.volume[size[0] // 2])
+        promise(shown, "the image of a volume must be its middle slice; leave it out.")
+    else:
+        promise(result.volume is None, "a method that returns a volume must say dimensions=3.")
     for name, each in result.maps.items():
         _check_name(name, "map")
         promise(each.title, f"the map {name} needs a title.")
@@ -215,7 +228,7 @@ def _check_name(name: str, what: str) -> None:
     )
 
 
-def _check_map(each: Map, size: tuple[int, int], exemplar: tuple[int, ...], name: str) -> None:
+def _check_map(each: Map, size: tuple[int, ...], exemplar: tuple[int, ...], name: str) -> None:
     if each.kind == "source":
         promise(each.data.shape == (*size, 2), f"the map {name} must have the shape {(*size, 2)}.")
         promise(each.data.dtype == np.int32, f"the map {name} must be int32.")
@@ -241,7 +254,8 @@ def check_odd_inputs(method: Method) -> None:
             except InputError as error:
                 check_sentence(str(error), f"the refusal of {exemplar.size} to {size}")
                 continue
-            promise_output(result, size or exemplar.size, exemplar.pixels.shape)
+            wanted = default_size(exemplar.size, method.dimensions) if size is None else size_for(method, size)
+            promise_output(result, wanted, exemplar.pixels.shape)
 
 
 def check_settings(method: Method) -> None:
@@ -253,4 +267,4 @@ def check_settings(method: Method) -> None:
         except InputError as error:
             check_sentence(str(error), f"the refusal of {params}")
             continue
-        promise_output(result, (11, 18), exemplar.pixels.shape)
+        promise_output(result, size_for(method, (11, 18)), exemplar.pixels.shape)

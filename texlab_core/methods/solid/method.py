@@ -15,6 +15,7 @@ from texlab_core.errors import ParamError
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.solid.params import SolidParams
 from texlab_core.methods.solid.rounds import SolidModel
+from texlab_core.methods.solid.told import MEASURES
 from texlab_core.work.tasks import Pace, crew
 
 if TYPE_CHECKING:
@@ -102,6 +103,7 @@ register(
             "exemplars with one direction, such as wood grain: no solid has it in all slices",
             "structure larger than 2^scales voxels",
         ),
+        measures=MEASURES,
         dimensions=3,
         order=12,
     )

@@ -14,6 +14,7 @@ from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.rounds import match
 from texlab_core.methods.solid.rounds import CUTS, AxisModel, Plan, match_round, measure, measure_slices
 from texlab_core.methods.solid.slices import SlicePlan
+from texlab_core.methods.solid.told import BANDS, SLICES, VOXELS
 from texlab_core.transforms import gaussian, solid_laplacian
 from texlab_core.work.tasks import Pace, finish, row_blocks
 
@@ -133,9 +134,9 @@ class Synthesis:
         self.volume = volume
         pixels = yield from self._measure_pixels(volume)
         self.measures = {
-            "w1-pixels": pixels,
-            "w1-bands": _mean(np.array(final)),
-            **{f"w1-slices-{cut}": float(share) for cut, share in zip(CUTS, shares.mean(axis=0), strict=True)},
+            VOXELS.id: pixels,
+            BANDS.id: _mean(np.array(final)),
+            **{SLICES[cut].id: float(share) for cut, share in zip(CUTS, shares.mean(axis=0), strict=True)},
         }
         self.stage = self.stages - 1
         self._next_stage()
