@@ -202,7 +202,7 @@ def test_a_range_becomes_a_list_that_can_be_edited(qtbot, bench):
     choose(qtbot, axis.spacing, "list")
     assert axis.listed.isVisible()
     assert not axis.first.isVisible()
-    assert axis.listed.text() == "0, 0.5, 1"
+    assert axis.listed.text() == "0; 0.5; 1"
     axis.listed.setFocus()
     axis.listed.selectAll()
     qtbot.keyClicks(axis.listed, "2, 0.25,4")

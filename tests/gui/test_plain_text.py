@@ -32,6 +32,9 @@ MAKERS = {
     "QErrorMessage": "widgets/plain.py",
     "QToolTip": "widgets/plain.py",
     "setToolTip": "widgets/plain.py",
+    "QSpinBox": "widgets/number_box.py",
+    "QDoubleSpinBox": "widgets/number_box.py",
+    "QDoubleValidator": "widgets/number_box.py",
     "setWhatsThis": "widgets/plain.py",
     "QTextBrowser": "window/help_window.py",
     "QTextEdit": "window/help_window.py",
@@ -54,7 +57,7 @@ def test_nothing_but_one_module_makes_labels_and_tooltips(path: Path) -> None:
         elif isinstance(node, ast.Attribute):
             used.add(node.attr)
     wrong = {name for name in used & MAKERS.keys() if MAKERS[name] != place} - HARMLESS.get(place, set())
-    assert not wrong, f"{place} uses {', '.join(sorted(wrong))}: take what texlab/widgets/plain.py offers."
+    assert not wrong, f"{place} uses {', '.join(sorted(wrong))}: take what texlab/{MAKERS[min(wrong)]} offers."
 
 
 def test_tips_and_labels_show_what_is_written(qtbot: Any) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import (
-    QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
     QMenu,
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import (
 from texlab.columns.commands import COLUMN_COMMANDS
 from texlab.columns.status import status_parts
 from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import set_tip
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine, strut
@@ -98,7 +98,7 @@ class ColumnView(QFrame):
         # The row is as high as that of the exemplar.
         crop = QToolButton()
         crop.setText("Crop")
-        for model in (QDoubleSpinBox(), crop):
+        for model in (NumberBox(), crop):
             buttons.addWidget(strut(model))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QDoubleSpinBox, QFrame, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
 
 from texlab.widgets.image_pane import ImagePane
+from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine, strut
@@ -69,7 +70,7 @@ class ExemplarView(QFrame):
             "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
             "with Shift they resize it.",
         )
-        self.scale_box = QDoubleSpinBox()
+        self.scale_box = NumberBox()
         self.scale_box.setObjectName("scale-box")
         self.scale_box.setAccessibleName("Scale of the exemplar")
         set_tip(
@@ -80,7 +81,6 @@ class ExemplarView(QFrame):
         self.scale_box.setRange(0.01, 1.0)
         self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
-        self.scale_box.setKeyboardTracking(False)
         self.scale_box.setPrefix("×")
         self.line = StatusLine()
         self.line.setObjectName("exemplar-line")

@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QPushButton,
     QSizePolicy,
-    QSpinBox,
     QStackedLayout,
     QVBoxLayout,
     QWidget,
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Dock
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
+from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import Readout
 
@@ -149,9 +149,9 @@ class FramedDock(Dock):
 
     def add_number(
         self, name: str, label: str, tip: str, limits: tuple[int, int], changed: Callable[[], Any]
-    ) -> QSpinBox:
+    ) -> WholeBox:
         """Add a whole number with its label inside the box."""
-        box = QSpinBox()
+        box = WholeBox()
         box.setRange(*limits)
         box.setPrefix(f"{label} ")
         box.valueChanged.connect(lambda _: changed())

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
-    QDoubleSpinBox,
     QGridLayout,
     QSlider,
-    QSpinBox,
     QToolButton,
     QWidget,
 )
 
 from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, editor_of
+from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
@@ -137,7 +136,7 @@ class ParameterForm(QWidget):
         knob.setObjectName(f"knob-{field.name}")
         set_tip(knob, tooltip(field))
         for child in knob.findChildren(QWidget):
-            if isinstance(child, QSlider | QSpinBox | QDoubleSpinBox | QComboBox):
+            if isinstance(child, QSlider | WholeBox | NumberBox | QComboBox):
                 child.installEventFilter(self._guard)
                 child.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         label = Label(field.label)

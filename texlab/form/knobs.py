@@ -9,16 +9,15 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDoubleSpinBox,
     QGridLayout,
     QSizePolicy,
     QSlider,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
 
 from texlab.form.scales import Scale, box_step, decimals
+from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ class NumberKnob(KnobWidget):
         self.slider.setPageStep(max(1, self._scale.positions // 10))
         self.slider.setSingleStep(max(1, self._scale.positions // 100))
         self.slider.setMinimumWidth(60)
-        self.box: QSpinBox | QDoubleSpinBox = self._make_box(field)
+        self.box: WholeBox | NumberBox = self._make_box(field)
         layout = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.slider, 0, 0)
@@ -91,20 +90,19 @@ class NumberKnob(KnobWidget):
         self.box.valueChanged.connect(self._box_changed)
         self.setFocusProxy(self.slider)
 
-    def _make_box(self, field: Field) -> QSpinBox | QDoubleSpinBox:
-        box: QSpinBox | QDoubleSpinBox
+    def _make_box(self, field: Field) -> WholeBox | NumberBox:
+        box: WholeBox | NumberBox
         if field.kind == "int":
-            box = QSpinBox()
+            box = WholeBox()
             box.setRange(round(self._scale.low), round(self._scale.high))
             box.setSingleStep(round(field.knob.step or self._scale.step))
         else:
-            box = QDoubleSpinBox()
+            box = NumberBox()
             box.setDecimals(decimals(field))
             box.setRange(self._scale.low, self._scale.high)
             box.setSingleStep(box_step(field))
             if field.knob.log and field.knob.step is None:
-                box.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
-        box.setKeyboardTracking(False)
+                box.setStepType(NumberBox.StepType.AdaptiveDecimalStepType)
         box.setObjectName(f"box-{field.name}")
         box.setAccessibleName(field.label)
         if field.knob.unit:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import re
+
 import numpy as np
+
+_NUMBER = re.compile(r"[+-]?(\d+([.,٫]\d*)?|[.,٫]\d+)([eE][+-]?\d+)?")
 
 
 def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
@@ -53,3 +58,30 @@ def remaining(seconds: float) -> str:
     if seconds < 99.5:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.1f} min" if seconds < 10 * 60 else f"{seconds / 60:.0f} min"
+
+
+def parse_number(text: str) -> float | None:
+    """Return the number that a text is, or None.
+
+    Both decimal signs are read, 0.25 and 0,25, and the digits of any script. Nothing separates thousands:
+    "1.234,5" is no number, rather than one of two.
+    """
+    text = text.strip().replace("\u2212", "-")
+    if not _NUMBER.fullmatch(text):
+        return None
+    value = float(re.sub("[,٫]", ".", text))
+    return value if math.isfinite(value) else None
+
+
+def parse_list(text: str) -> list[str]:
+    """Return the items of a list of numbers as they are typed, each with a point for its decimal sign.
+
+    Semicolons and spaces separate; a comma does too where a space follows it, where several stand without a
+    space ("1,2,3"), or where points are the decimal signs. So "0,1; 0,2" and "0.1, 0.2" are both two numbers.
+    """
+    has_points = "." in text
+    if not has_points and not re.search(r"[;\s]", text.strip()) and text.count(",") > 1:
+        has_points = True
+    separators = r"[;\s,]+" if has_points else r"(?:[;\s]|,(?=\s|$))+"
+    items = [item for item in re.split(separators, text.strip()) if item]
+    return [item.replace(",", ".").replace("٫", ".") for item in items]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QMenu, QSizePolicy, QSpinBox, QToolBar, QToolButton, QWidget
+from PySide6.QtWidgets import QMenu, QSizePolicy, QToolBar, QToolButton, QWidget
 
+from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.job import MAX_SEED
 
@@ -80,12 +81,11 @@ class ToolBar(QToolBar):
                 box.setValue(value)
 
 
-def _box(name: str, low: int, high: int, value: int, tip: str) -> QSpinBox:
-    box = QSpinBox()
+def _box(name: str, low: int, high: int, value: int, tip: str) -> WholeBox:
+    box = WholeBox()
     box.setObjectName(f"{name.lower()}-box")
     box.setAccessibleName(name)
     box.setRange(low, high)
-    box.setKeyboardTracking(False)
     set_tip(box, tip)
     box.setValue(value)
     return box

@@ -57,8 +57,6 @@ class ExplainDock(FramedDock):
         self.pixel_row = self.add_number(
             "row", "y", "Row of the pixel; typing one keeps the pixel", (0, 0), self._typed
         )
-        for box in (self.pixel_column, self.pixel_row):
-            box.setKeyboardTracking(False)
         self.release = self.add_button(
             "release", "Let go", "Follow the pointer again instead of the kept pixel", self._let_go
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSpinBox
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.fill.mask_canvas import DEFAULT_RADIUS, MaskCanvas
@@ -13,6 +13,7 @@ from texlab.docks.frame import FramedDock, shown_image
 from texlab.docks.recent import Same
 from texlab.state.intentions import AskOnce, FillHoles, Tell
 from texlab.style.pictures import to_picture
+from texlab.widgets.number_box import WholeBox
 from texlab_core.engine.inputs import ImageInput, hash_arrays
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class FillDock(FramedDock):
             self._target_changed,
         )
         self.tool = self.add_choice("tool", "Tool", "What the left button paints with", _TOOLS, self._tool_changed)
-        self.radius = QSpinBox()
+        self.radius = WholeBox()
         self.radius.setRange(1, 64)
         self.radius.setValue(DEFAULT_RADIUS)
         self.radius.setPrefix("radius ")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtWidgets import (
-    QDoubleSpinBox,
     QFileDialog,
     QFrame,
     QHBoxLayout,
@@ -39,6 +38,7 @@ from texlab.docks.spectral.code_views import CodeGrid, HistogramBars
 from texlab.state.intentions import AskOnce, EditInputs, Open, Tell
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number as digits
+from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.inputs import DataInput
 from texlab_core.transforms.gabor_bank import CENTRE_FREQUENCIES, CENTRE_ORIENTATIONS, WIDTHS
@@ -157,10 +157,9 @@ class CodeDock(FramedDock):
         self._pressed: MsgCode | None = None
         self._sent: DataInput | None = None
         self._chosen = Number("energy", 0)
-        self.box = QDoubleSpinBox()
-        self.box.setKeyboardTracking(False)
+        self.box = NumberBox()
         self.box.setDecimals(3)
-        self.box.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
+        self.box.setStepType(NumberBox.StepType.AdaptiveDecimalStepType)
         self.box.valueChanged.connect(self._box_changed)
         self.add_control(self.box, "value", "The chosen number", "The number chosen below: type it")
         tip = "Synthesize from the numbers measured on the exemplar again"

@@ -9,18 +9,18 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QLineEdit,
     QSizePolicy,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
 
 from texlab.form.scales import box_step, decimals
+from texlab.style.numbers import parse_list
 from texlab.widgets.flow_layout import FlowLayout
+from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
@@ -82,13 +82,13 @@ class AxisEditor(QWidget):
         for place, (value, text, tip) in enumerate(SPACINGS):
             self.spacing.addItem(text, value)
             self.spacing.setItemData(place, tip_text(tip), Qt.ItemDataRole.ToolTipRole)
-        self.first, self.last = QDoubleSpinBox(), QDoubleSpinBox()
-        self.count = QSpinBox()
+        self.first, self.last = NumberBox(), NumberBox()
+        self.count = WholeBox()
         self.count.setRange(1, MAX_CELLS)
         self.count.setValue(COUNT)
         self.count.setPrefix("× ")
         self.listed = QLineEdit()
-        self.listed.setPlaceholderText("0.1, 0.2, 0.4")
+        self.listed.setPlaceholderText("0.1; 0.2; 0.4")
         self.boxes: list[QCheckBox] = []
         self._range = QWidget()
         self._choices = QWidget()
@@ -119,7 +119,6 @@ class AxisEditor(QWidget):
         for box in (self.first, self.last, self.count):
             box.setMinimumWidth(58)
             box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-            box.setKeyboardTracking(False)
         values = QVBoxLayout()
         values.setContentsMargins(0, 0, 0, 0)
         for widget in (self._range, self.listed, self._choices):
@@ -143,7 +142,7 @@ class AxisEditor(QWidget):
             (self.first, "from", "first value", "Value of the first cell"),
             (self.last, "to", "last value", "Value of the last cell"),
             (self.count, "count", "number of values", f"How many values, 1 to {MAX_CELLS}"),
-            (self.listed, "values", "list of values", "The values, separated by commas"),
+            (self.listed, "values", "list of values", "The values, separated by semicolons or spaces"),
         ):
             control.setObjectName(f"{self.objectName()}-{name}")
             control.setAccessibleName(f"{self._title}: {label}")
@@ -199,7 +198,7 @@ class AxisEditor(QWidget):
             return Vary.of(field.name, chosen, self._params)
         spacing = self.spacing.currentData()
         if spacing == "list":
-            return Vary.parse(f"{field.name}={self.listed.text()}", self._params)
+            return Vary.parse(f"{field.name}={','.join(parse_list(self.listed.text()))}", self._params)
         first, last = field.check(self.first.value()), field.check(self.last.value())
         return Vary(field.name, spread(field, first, last, self.count.value(), log=spacing == "log"))
 
@@ -285,7 +284,7 @@ class AxisEditor(QWidget):
 
     def _set_numbers(self, spacing: Spacing, first: float, last: float, count: int) -> None:
         self.spacing.setCurrentIndex(self.spacing.findData(spacing))
-        settings: tuple[tuple[QSpinBox | QDoubleSpinBox, Callable[[], None]], ...] = (
+        settings: tuple[tuple[WholeBox | NumberBox, Callable[[], None]], ...] = (
             (self.first, lambda: self.first.setValue(first)),
             (self.last, lambda: self.last.setValue(last)),
             (self.count, lambda: self.count.setValue(count)),
@@ -337,4 +336,4 @@ def usual_range(field: Field) -> tuple[float, float, Spacing]:
 def written(values: tuple[Any, ...]) -> str:
     """Return numbers as a list that can be read again."""
     texts = ((f"{value:.12g}", value) for value in values)
-    return ", ".join(text if float(text) == value else repr(value) for text, value in texts)
+    return "; ".join(text if float(text) == value else repr(value) for text, value in texts)

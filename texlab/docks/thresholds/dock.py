@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
@@ -14,6 +14,7 @@ from texlab.docks.thresholds.distance_view import Distances, DistanceView
 from texlab.docks.thresholds.editor import TableEditor
 from texlab.docks.thresholds.table import KnownAxes, law_of, make_view, table_field
 from texlab.state.intentions import EditField
+from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
@@ -94,11 +95,10 @@ class ThresholdsDock(FramedDock):
             [("each channel", "each"), ("channels together", "together")],
             self._rearrange,
         )
-        self.value = QDoubleSpinBox()
+        self.value = NumberBox()
         self.value.setRange(0, MAX_THRESHOLD)
         self.value.setDecimals(5)
         self.value.setStepType(QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
-        self.value.setKeyboardTracking(False)
         self.value.setPrefix("T = ")
         tip = "The threshold of the selected cells; while painting, the one that is painted (Alt+click picks it)"
         self.value.valueChanged.connect(self._value_set)

@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QDoubleValidator, QPen
+from PySide6.QtGui import QColor, QPen
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import cell_text, changed, mirrored, moved, replaced, reset, rounded
 from texlab.form.knobs import SETTLE_MS
+from texlab.style.numbers import parse_number
 from texlab.widgets.plain import set_tip
+from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPainter
@@ -48,7 +50,6 @@ class EditableTable(TableMap):
         self._entry.setAccessibleName("Value of the selected cells")
         set_tip(self._entry, "A threshold from 0; Return takes it, Escape does not")
         self._entry.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._entry.setValidator(QDoubleValidator(0.0, 1e6, 6, self._entry))
         self._entry.hide()
 
     @property
@@ -204,13 +205,10 @@ class EditableTable(TableMap):
 
     def take_entry(self) -> None:
         """Take what was typed."""
-        text = self._entry.text().replace(",", ".")
+        value = parse_number(self._entry.text())
         self.close_entry()
-        try:
-            value = float(text)
-        except ValueError:
-            return
-        self.set_value(value)
+        if value is not None and 0 <= value <= MAX_THRESHOLD:
+            self.set_value(value)
 
     def close_entry(self) -> None:
         """Close the box without taking what was typed."""
