@@ -91,7 +91,7 @@ def spread(count: int, chosen: int) -> tuple[int, ...]:
 def feature_words(feature: Feature) -> str:
     """Return a feature in words: ``red first derivative 45°``."""
     words = f"{feature.channel} {KINDS[feature.kind]}"
-    return words if feature.kind == "laplacian" else f"{words} {feature.angle:g}°"
+    return f"{words} {feature.angle:g}°" if feature.directed else words
 
 
 def strictest_words(explanation: Explanation, strictest: Strictest) -> str:

@@ -51,7 +51,7 @@ def draw_glyph(painter: QPainter, feature: Feature, area: QRectF, colour: QColor
     if feature.kind == "first":
         painter.setBrush(colour)
         painter.drawPie(disc, round(16 * (feature.angle - 90)), 16 * 180)
-    elif feature.kind == "second":
+    elif feature.kind in ("second", "oriented"):
         painter.translate(disc.center())
         painter.rotate(-(feature.angle + 90))
         painter.fillRect(QRectF(-side / 2, -side / 8, side, side / 4), colour)

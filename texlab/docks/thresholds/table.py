@@ -30,8 +30,20 @@ Arrangement = Literal["each", "together"]
 SMALLEST = 1e-4
 FIRST = 1e-3
 MOST_KNOWN = 12
-KINDS = {"laplacian": "Laplacian band", "first": "first derivative", "second": "second derivative"}
-GROUPS = {"laplacian": "band", "first": "first derivatives", "second": "second derivatives"}
+KINDS = {
+    "laplacian": "Laplacian band",
+    "first": "first derivative",
+    "second": "second derivative",
+    "residual": "low-pass residual",
+    "oriented": "oriented band",
+}
+GROUPS = {
+    "laplacian": "band",
+    "first": "first derivatives",
+    "second": "second derivatives",
+    "residual": "residual",
+    "oriented": "orientations",
+}
 
 
 @dataclass(frozen=True)
@@ -134,7 +146,7 @@ class Head:
     @property
     def title(self) -> str:
         """What it is, in words: ``red, first derivative 45°``."""
-        what = KINDS[self.first.kind] + ("" if self.first.kind == "laplacian" else f" {self.first.angle:g}°")
+        what = KINDS[self.first.kind] + (f" {self.first.angle:g}°" if self.first.directed else "")
         return f"{self.first.channel}, {what}" if len(self.features) == 1 else what
 
 

@@ -179,7 +179,11 @@ def analyze_steps(
             )
             yield from through(filling, (done, total))
         levels.append(
-            (yield from through(_finish(grid, i, band, measured, normalization, planes.stretch), (done, total)))
+            (
+                yield from through(
+                    finish_level(grid, i, band, measured, normalization, planes.stretch), (done, total)
+                )
+            )
         )
         done += grid.count(i) * (len(features) + 3 if i else 0)
         gaussian = coarser
@@ -249,7 +253,7 @@ def _measure(
         first = last
 
 
-def _finish(
+def finish_level(
     grid: Grid,
     i: int,
     band: NDArray[np.float64],
@@ -257,7 +261,7 @@ def _finish(
     normalization: Normalization,
     stretch: float,
 ) -> Generator[None, None, Level]:
-    """Normalize and reorder."""
+    """Normalize the features of a level, (J, h, w) float32, and bring everything into quadtree order."""
     from texlab_core.kernels.classes import classify_rows
 
     columns, height, width = measured.shape

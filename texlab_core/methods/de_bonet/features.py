@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FeatureKind = Literal["laplacian", "first", "second"]
+FeatureKind = Literal["laplacian", "first", "second", "residual", "oriented"]
 FilterSet = Literal["both", "first", "second", "laplacian"]
 
 
@@ -22,9 +22,11 @@ class Feature:
         ``luminance`` (also of a gray exemplar), ``red``, ``green`` or ``blue``, or a principal axis of the
         exemplar's colours: ``axis-1`` (the strongest), ``axis-2``, ``axis-3``.
     kind
-        The band of the Laplacian pyramid, or a first or second derivative of the Gaussian one.
+        The band of the Laplacian pyramid, or a first or second derivative of the Gaussian one; the low-pass
+        residual of the steerable pyramid, or one of its oriented bands.
     angle
-        Direction of the derivative in degrees, 0 <= angle < 180, counter-clockwise from the horizontal.
+        Direction of the derivative, or of the waves of the band, in degrees, 0 <= angle < 180, counter-clockwise
+        from the horizontal.
     """
 
     channel: str
@@ -34,7 +36,12 @@ class Feature:
     @property
     def name(self) -> str:
         """Name in threshold tables: ``red/first-45``; it does not depend on how many other features there are."""
-        return f"{self.channel}/{self.kind}" + ("" if self.kind == "laplacian" else f"-{round(self.angle, 2):g}")
+        return f"{self.channel}/{self.kind}" + (f"-{round(self.angle, 2):g}" if self.directed else "")
+
+    @property
+    def directed(self) -> bool:
+        """Whether it has an angle."""
+        return self.kind in ("first", "second", "oriented")
 
     def mirrored(self) -> Feature:
         """Return the feature that a picture mirrored left to right has in place of this one."""

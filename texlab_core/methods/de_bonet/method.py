@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.inputs import Inputs
-    from texlab_core.engine.steps import Output, Step
+    from texlab_core.engine.steps import FloatImage, Output, Step
     from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
 
@@ -178,6 +178,33 @@ class DeBonetParams(Params):
             group="Pyramid",
         ),
     ] = "pad"
+    pyramid: Annotated[
+        Literal["laplacian", "steerable"],
+        Knob(
+            help="Which bands are sampled.",
+            stage="analysis",
+            choices={
+                "laplacian": "those of the Laplacian pyramid, constrained by derivatives: the paper",
+                "steerable": "oriented ones, which are features too: the textbook's algorithm 11.5",
+            },
+            source="Forsyth & Ponce, algorithm 11.5, assignments a and b",
+            formerly="laplacian",
+            group="Pyramid",
+        ),
+    ] = "laplacian"
+    bands: Annotated[
+        int,
+        Knob(
+            help="Orientations of the steerable pyramid.",
+            low=1,
+            high=18,
+            stage="analysis",
+            when=("pyramid", ("steerable",)),
+            source="Forsyth & Ponce, assignment b",
+            formerly=4,
+            group="Pyramid",
+        ),
+    ] = 4
     filters: Annotated[
         Literal["both", "first", "second", "laplacian"],
         Knob(
@@ -252,7 +279,8 @@ class DeBonetParams(Params):
     @property
     def smallest_side(self) -> int:
         """Shorter side that the coarsest level may not fall below."""
-        fitted = self.filter_size if self.fit_filters and self.filters != "laplacian" else 1
+        derived = self.pyramid == "laplacian" and self.filters != "laplacian"
+        fitted = self.filter_size if self.fit_filters and derived else 1
         return max(self.coarsest_side, fitted)
 
     def depth(self, exemplar: tuple[int, int]) -> int:
@@ -266,7 +294,12 @@ def check(inputs: Inputs, params: DeBonetParams, size: tuple[int, int]) -> None:
     """Refuse outputs that are too thin for the pyramid."""
     from texlab_core.methods.de_bonet.growth import check_size
 
-    check_size(size, params.depth(exemplar_of(inputs).size))
+    depth = params.depth(exemplar_of(inputs).size)
+    check_size(size, depth)
+    if params.pyramid == "steerable":
+        from texlab_core.methods.de_bonet.steerable import check_steerable_size
+
+        check_steerable_size(size, depth)
 
 
 def analyze(inputs: Inputs, params: DeBonetParams) -> Generator[Step, None, Analysis]:
@@ -278,6 +311,19 @@ def _analyze(inputs: Inputs, params: DeBonetParams, depth: int) -> Generator[Ste
     from texlab_core.methods.de_bonet.analysis import analyze_steps
     from texlab_core.methods.de_bonet.growth import analyze_in_steps
 
+    if params.pyramid == "steerable":
+        from texlab_core.methods.de_bonet.steerable import analyze_steerable_steps
+
+        oriented = analyze_steerable_steps(
+            exemplar_of(inputs).pixels,
+            depth=depth,
+            orientations=params.bands,
+            border=params.border,
+            fitting=params.fitting,
+            normalization=params.normalization,
+            channels=params.channels,
+        )
+        return (yield from analyze_in_steps(oriented, "pyramid"))
     steps = analyze_steps(
         exemplar_of(inputs).pixels,
         depth=depth,
@@ -302,6 +348,7 @@ def synthesize(
     from texlab_core.methods.de_bonet.layout import Layout
     from texlab_core.methods.de_bonet.report import report_steps
     from texlab_core.methods.de_bonet.sampling import prepare_steps, sample_steps
+    from texlab_core.methods.de_bonet.steerable import SteerableAnalysis, grow_steerable
     from texlab_core.work.tasks import through
 
     notes: tuple[str, ...] = ()
@@ -328,15 +375,27 @@ def synthesize(
         streams=streams,
     )
     sampling = yield from through(preparing, Step(0, 1, "layout"))
-    image = yield from grow(
-        model,
-        sampling.grid,
-        sampling.sources,
-        sample_steps(sampling),
-        size=size,
-        periodic=params.tileable or model.border == "periodic",
-        after=sampling.grid.count(0),
-    )
+    growing: Generator[Step, None, FloatImage]
+    if isinstance(model, SteerableAnalysis):
+        growing = grow_steerable(
+            model,
+            sampling.grid,
+            sampling.sources,
+            sample_steps(sampling),
+            size=size,
+            after=sampling.grid.count(0),
+        )
+    else:
+        growing = grow(
+            model,
+            sampling.grid,
+            sampling.sources,
+            sample_steps(sampling),
+            size=size,
+            periodic=params.tileable or model.border == "periodic",
+            after=sampling.grid.count(0),
+        )
+    image = yield from growing
     return (yield from report_steps(sampling, size, image, model.notes + notes))
 
 

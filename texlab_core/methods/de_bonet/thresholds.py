@@ -20,7 +20,9 @@ Cell = tuple[int, str]
 MAX_K = 24
 MAX_THRESHOLD = 1e6
 MAX_CELLS = 4096
-_NAME = re.compile(r"(luminance|red|green|blue|axis-[123])/(laplacian|(first|second)-[0-9]{1,3}(\.[0-9]{1,2})?)")
+_NAME = re.compile(
+    r"(luminance|red|green|blue|axis-[123])/(laplacian|residual|(first|second|oriented)-[0-9]{1,3}(\.[0-9]{1,2})?)"
+)
 
 
 @dataclass(frozen=True, slots=True)

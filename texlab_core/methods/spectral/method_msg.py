@@ -60,6 +60,7 @@ class MsgParams(Params):
             },
             stage="analysis",
             source="Navarro & Portilla 1996, section 3.1.2, footnote",
+            formerly="uv",
             group="Analysis",
         ),
     ] = "uv"
