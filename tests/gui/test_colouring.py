@@ -66,15 +66,45 @@ def test_identity_source_map_shows_the_key():
     assert np.array_equal(picture, colouring.source_key(40, 60))
 
 
-def test_source_hue_is_the_angle_and_the_middle_is_white():
-    key = colouring.source_key(101, 101).astype(int)
-    assert key[50, 50].min() >= 253
-    right, left = key[50, 100], key[50, 0]
-    assert right.argmax() == 0
-    assert right[1:].max() < 10
-    assert left.argmin() == 0
-    # Opposite places have opposite hues: the channels add up to white.
-    assert np.all(np.abs(key[20, 30] + key[80, 70] - key[20, 30].max() - key[80, 70].min()) <= 2)
+# Machado, Oliveira and Fernandes 2009, severity 1: linear RGB as dichromats see it.
+SIGHT = {
+    "trichromat": np.eye(3),
+    "deuteranope": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    "protanope": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+}
+
+
+def lab(colours, sight):
+    """Return CIE Lab (D65) of sRGB colours, 0 .. 255, as somebody sees them."""
+    share = colours / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(linear @ np.array(SIGHT[sight]).T, 0, 1)
+    to_xyz = [
+        [0.4124564, 0.3575761, 0.1804375],
+        [0.2126729, 0.7151522, 0.072175],
+        [0.0193339, 0.119192, 0.9503041],
+    ]
+    xyz = seen @ np.array(to_xyz).T / (0.95047, 1.0, 1.08883)
+    f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    return np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], -1)
+
+
+@pytest.mark.parametrize("sight", SIGHT)
+def test_places_far_apart_look_different_to_everybody(sight):
+    side = 24
+    seen = lab(colouring.source_key(side, side).reshape(-1, 3), sight)
+    places = np.stack(np.indices((side, side)), -1).reshape(-1, 2) / side
+    far = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) > 0.4
+    difference = np.sqrt(((seen[:, None] - seen[None]) ** 2).sum(-1))
+    assert difference[far].min() > 20
 
 
 def test_pixels_without_a_source_are_gray():
