@@ -80,8 +80,12 @@ def test_an_output_needs_a_folder(tmp_path: Path) -> None:
 
 
 def test_a_folder_is_made_when_its_parent_is_there(tmp_path: Path) -> None:
-    assert output_folder(str(tmp_path / "maps")).is_dir()
-    assert output_folder(str(tmp_path / "maps")).is_dir()
+    # Not before there is something to put into it.
+    assert output_folder(str(tmp_path / "maps")) == tmp_path / "maps"
+    assert not (tmp_path / "maps").exists()
+    # Not before there is something to put into it.
+    assert output_folder(str(tmp_path / "maps")) == tmp_path / "maps"
+    assert not (tmp_path / "maps").exists()
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="is a file"):
         output_folder(str(tmp_path / "file"))

@@ -64,7 +64,7 @@ def test_export_import_rename_delete(call, tmp_path):
         (["show", "nothing-like-it"], "There is no preset called"),
         (["delete", "nothing-like-it"], "There is no preset called"),
         (["save", "a"], "say --method ID."),
-        (["save", "a/b", "--method", METHOD], "must hold no slash"),
+        (["save", "a/b", "--method", METHOD], "can hold no slash"),
         (["save", "a", "--method", METHOD, "--set", "no_such=1"], "parameter name: must be"),
         (["save", "a", "--method", "no-such"], "method: must be one of"),
         (["list", "--method", "no-such"], "method: must be one of"),
@@ -72,7 +72,10 @@ def test_export_import_rename_delete(call, tmp_path):
         (["rename", "paper", "mine", "--method", "heeger-bergen"], "only your own can be renamed or deleted."),
         (["import", "."], "The preset . cannot be read"),
         (["import", "missing.json"], "cannot be read (No such file or directory)."),
-        (["export", "foam", f"{__file__}/x.json"], "cannot be made (File exists)."),
+        (["export", "foam", "missing/x.json"], "The folder missing does not exist."),
+        (["export", "foam", ""], "The name of the file or folder to write is empty."),
+        (["import", ""], "The name of the preset's file is empty."),
+        (["export", "foam", f"{__file__}/x.json"], "test_presets_command.py does not exist."),
     ],
 )
 def test_refusals(call, words, says):

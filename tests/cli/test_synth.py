@@ -310,7 +310,11 @@ def test_a_map_overwrites_neither_exemplar_nor_result(texlab: Texlab) -> None:
     assert Path("maps/source.png").read_bytes() == before
     again = texlab("synth", "a.png", "--method", "tiling", "--out", "maps/source.png", "--maps", "maps")
     assert again.code == 2
-    assert read_recipe("maps/source.png").method == "tiling"
+    assert Path("maps/source.png").read_bytes() == before
+    assert [path.name for path in Path("maps").iterdir()] == ["source.png"]
+    full = texlab("synth", "maps/source.png", "--method", "tiling", "--out", "c.png", "--maps", "new")
+    assert full.code == 0
+    assert read_recipe("c.png").method == "tiling"
     assert texlab("synth", "a.png", "--method", "tiling", "--out", "b.png", "--maps", "").code == 2
 
 

@@ -19,7 +19,7 @@ from texlab_core.engine.run import run
 from texlab_core.errors import ImageError, NoRecipeError, TooLargeError
 from texlab_core.images import exemplar as door
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.images.formats import decoded, jpeg
+from texlab_core.images.formats import decoded, jpeg, webp_text
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import default_bits, encode_image, named_with_suffix, write_image
 from texlab_core.images.reducing import area_weights
@@ -176,13 +176,36 @@ def test_saved_png_says_srgb():
     assert Image.open(io.BytesIO(data)).info["srgb"] == 0
 
 
-def test_webp_is_without_loss_and_has_its_recipe_beside_it(tmp_path):
+def test_webp_is_without_loss_and_holds_its_recipe(tmp_path):
     path = tmp_path / "a.webp"
     result = made_of(as_exemplar(DEPTHS[8]))
     save_result(result, path)
     stored = np.asarray(Image.open(path))
     assert np.array_equal(stored, np.rint(255 * result.image.astype(np.float64)))
     assert read_recipe(path).seed == 1
+    assert read_recipe(path.read_bytes()).seed == 1
+    assert [each.name for each in tmp_path.iterdir()] == ["a.webp"]
+    for channels in (1, 2, 3, 4):
+        values = np.random.default_rng(channels).integers(0, 256, (7, 5, channels)).astype(np.uint8)
+        floats = values / np.float32(255)
+        alpha = floats[..., -1] if channels % 2 == 0 else None
+        colours = floats[..., : channels - 1 + channels % 2]
+        texts = {"key": "x" * 101, "other": "Wände"}
+        data = encode_image("a.webp", colours, text=texts, alpha=alpha)
+        # Other programs read it as ever: Pillow and OpenCV.
+        shown = np.asarray(Image.open(io.BytesIO(data)))
+        assert np.array_equal(shown[..., 0], values[..., 0])
+        assert shown.shape[2] == 4 - channels % 2
+        assert channels % 2 or np.array_equal(shown[..., 3], values[..., -1])
+        assert cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED).shape[:2] == (7, 5)
+        assert as_exemplar(data).size == (7, 5)
+        for key, text in texts.items():
+            assert webp_text.read_text(io.BytesIO(data), key, 200) == text.encode()
+        assert webp_text.read_text(io.BytesIO(data), "none", 200) is None
+        with pytest.raises(ValueError, match="is longer than 100 bytes"):
+            webp_text.read_text(io.BytesIO(data), "key", 100)
+        with pytest.raises(ValueError, match="is damaged"):
+            webp_text.read_text(io.BytesIO(data[:-3]), "other", 200)
     gray = encode_image("a.webp", NOISE[..., 0])
     assert np.array_equal(as_exemplar(gray).pixels, as_exemplar(encode_image("a.png", NOISE[..., 0])).pixels)
     with pytest.raises(ImageError, match="a WebP file has at most 16383 pixels in a side, got 16384 x 2"):

@@ -118,7 +118,12 @@ def test_only_images_of_floats_are_written(tmp_path, pixels):
 
 
 def test_texts_that_a_format_does_not_hold_are_a_programming_error(tmp_path):
-    for name, text in (("a.jpg", {"a": "b"}), ("a.tif", {"a": "b", "c": "d"}), ("a.png", {"": "b"})):
+    for name, text in (
+        ("a.jpg", {"": "b"}),
+        ("a.webp", {"": "b"}),
+        ("a.tif", {"a": "b", "c": "d"}),
+        ("a.png", {"": "b"}),
+    ):
         with pytest.raises(ValueError, match="text"):
             write_image(tmp_path / name, NOISE, text=text)
 

@@ -107,17 +107,14 @@ def test_redo_from_the_file_alone_gives_the_same_bits(tmp_path, kind, taken, cha
     assert run(job).image.tobytes() == result.image.tobytes()
 
 
-@pytest.mark.parametrize("name", ["out.png", "out.tif", "out.tiff", "out.jpg", "out.JPEG"])
+@pytest.mark.parametrize("name", ["out.png", "out.tif", "out.tiff", "out.jpg", "out.JPEG", "out.webp"])
 def test_every_format_carries_its_recipe(tmp_path, name):
     result = result_of(as_exemplar("gallery:structured-pebbles"))
     save_result(result, tmp_path / name)
     again = run(read_recipe(str(tmp_path / name)).job())
     assert again.image.tobytes() == result.image.tobytes()
     assert as_exemplar(tmp_path / name).size == (9, 13)
-    files = {each.name for each in tmp_path.iterdir()}
-    assert files == {name} | ({"out.texlab.json"} if "jp" in name.lower() else set())
-    for each in files:
-        assert read_recipe(tmp_path / each).seed == 5
+    assert {each.name for each in tmp_path.iterdir()} == {name}
 
 
 def test_the_picture_is_the_result_and_other_programs_see_the_recipe(tmp_path):
@@ -136,7 +133,7 @@ def test_the_picture_is_the_result_and_other_programs_see_the_recipe(tmp_path):
 
 def test_a_recipe_also_reads_from_bytes(tmp_path):
     result = result_of(as_exemplar(levels()))
-    for name in ("out.png", "out.tif"):
+    for name in ("out.png", "out.tif", "out.jpg", "out.webp"):
         save_result(result, tmp_path / name)
         assert run(read_recipe((tmp_path / name).read_bytes()).job()).image.tobytes() == result.image.tobytes()
 
@@ -501,7 +498,7 @@ def test_files_without_recipe(tmp_path):
 
 def test_damaged_files_are_one_sentence(tmp_path):
     result = result_of(as_exemplar(levels()))
-    for name in ("out.png", "out.tif"):
+    for name in ("out.png", "out.tif", "out.jpg", "out.webp"):
         save_result(result, tmp_path / name)
         whole = (tmp_path / name).read_bytes()
         for share in (0.1, 0.5):
@@ -516,7 +513,7 @@ def test_a_file_that_cannot_be_opened(tmp_path, monkeypatch):
     def refuse(*_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("builtins.open", refuse)
+    monkeypatch.setattr("os.open", refuse)
     with pytest.raises(RecipeError, match=r"out\.png: cannot be opened \(Permission denied\)\.$"):
         read_recipe(tmp_path / "out.png")
     monkeypatch.undo()

@@ -12,7 +12,8 @@ import tifffile
 from PIL import Image
 
 from tests.contract.cases import assert_sentence, texture
-from texlab_core.documents.reading import read_recipe, recipe_text, sidecar
+from texlab_core.documents.beside import sidecar
+from texlab_core.documents.reading import read_recipe, recipe_text
 from texlab_core.documents.record import check_result_format, save_maps, save_result, summary
 from texlab_core.engine.job import Job
 from texlab_core.engine.result import Result

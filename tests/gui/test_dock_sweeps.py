@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
+from tests import stub_method
 from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
 from texlab.docks.host import DockHost
 from texlab.docks.sweeps.axis import AxisEditor
@@ -330,25 +332,50 @@ def test_the_size_of_the_columns(qtbot, bench):
     assert size.width() * 3 == pytest.approx(size.height() * 4, abs=3)
 
 
-def test_the_sheet_fills_while_it_runs_and_stops_at_once(qtbot, bench):
+class Gate:
+    """Lets so many cells of the stub finish, and holds those that begin later until it is opened."""
+
+    def __init__(self, monkeypatch, count):
+        self._opened, self._count = threading.Event(), count
+        monkeypatch.setattr(stub_method, "time", SimpleNamespace(sleep=self._nap))
+
+    def _nap(self, _):
+        here = threading.get_ident()
+        # Threads are used again: the cell at work is the last one that this thread has begun.
+        if max(place for place, thread in enumerate(running) if thread == here) >= self._count:
+            self._opened.wait(PATIENCE_MS / 1000)
+
+    def open(self):
+        self._opened.set()
+
+
+def sweep_threads():
+    return [each.name for each in threading.enumerate() if each.name.startswith("sweep")]
+
+
+def test_the_sheet_fills_while_it_runs_and_stops_at_once(qtbot, bench, monkeypatch):
+    # The first three cells finish; those after them wait for as long as the test likes.
     here = bench(Column(1, "stub", StubParams(rounds=100)))
     dock = here.dock
     set_range(qtbot, dock.panel.across, "seed", "1", "40", "40")
     running.clear()
+    gate = Gate(monkeypatch, 3)
     start(qtbot, dock)
     qtbot.waitUntil(dock.stop_button.isEnabled)
     assert dock.progress.isVisible()
-    qtbot.waitUntil(lambda: 1 <= len(dock.cells) < 40, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: len(dock.cells) == 3, timeout=PATIENCE_MS)
     assert dock.sheet.canvas.describe(39) == "seed 40: not finished yet"
     qtbot.waitUntil(lambda: "left" in dock.status.text(), timeout=PATIENCE_MS)
     qtbot.mouseClick(dock.stop_button, LEFT)
     qtbot.waitUntil(lambda: "stopped" in dock.status.text())
+    gate.open()
     qtbot.waitUntil(lambda: not dock.running, timeout=PATIENCE_MS)
-    begun, made = len(running), len(dock.cells)
-    assert made <= begun < 40
+    qtbot.waitUntil(lambda: not sweep_threads(), timeout=PATIENCE_MS)
+    # Nothing begins any more: what is counted stays so.
+    begun = len(running)
+    assert len(dock.cells) == 3 <= begun < 40
     assert not dock.progress.isVisible()
     qtbot.waitUntil(lambda: not dock.stop_button.isEnabled())
-    assert not [each for each in threading.enumerate() if each.name.startswith("sweep")]
     # What is there can be used, and another sweep can be started.
     assert dock.save_button.isEnabled()
     enter(qtbot, dock.panel.across.count, "2")

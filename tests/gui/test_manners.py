@@ -377,8 +377,7 @@ def test_kept_pixels_are_the_same(tmp_path: Path) -> None:
     fine = np.random.default_rng(2).random((9, 7, 3)).astype(np.float32)
     coarse = np.arange(60, dtype=np.uint8).reshape(6, 10)
     for source in (as_exemplar(fine, name="fine"), as_exemplar(coarse, name="coarse")):
-        keep(source, tmp_path / "deeper" / "kept.npy")
-        back = load(Kept(tmp_path / "deeper" / "kept.npy", "x"))
+        back = load(Kept(keep(source, tmp_path / "deeper"), "x"))
         assert back.name == "x"
         assert np.array_equal(back.pixels, source.pixels)
 

@@ -209,7 +209,7 @@ def test_save_and_take_again(bench, qtbot):
     assert dialog.message.text() == ""
     qtbot.keyClicks(dialog.note, "Bright.")
     bench.name("Gleam / not")
-    assert dialog.message.text().startswith("name: must hold no slash")
+    assert dialog.message.text().startswith("The name of a preset can hold no slash")
     assert dialog.isVisible()
     assert bench.files == {}
     bench.name("Gleam")
@@ -273,7 +273,7 @@ def test_names_that_are_none(qtbot, name):
     dialog.open()
     dialog.name.setText(name)
     assert not dialog.ok.isEnabled()
-    assert dialog.message.text().startswith("name: must")
+    assert dialog.message.text().startswith("The name of a preset ")
     qtbot.keyClick(dialog.name, Qt.Key.Key_Return)
     assert dialog.isVisible()
     dialog.name.setText("good")

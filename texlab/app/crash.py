@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import faulthandler
 import logging
 import logging.handlers
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QtMsgType, Signal, qInstallMessageHandler
 
 from texlab.storage.paths import log_file
+from texlab_core.files.regular import open_appending, reason
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -26,6 +28,19 @@ _QT_LEVELS = {
 }
 
 
+class LogFile(logging.handlers.RotatingFileHandler):
+    """The log file; what cannot be written is lost without a word on the terminal."""
+
+    trouble = ""
+
+    def _open(self) -> Any:
+        return open_appending(self.baseFilename)
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Remember what is wrong."""
+        self.trouble = reason(sys.exc_info()[1] or OSError("it cannot be written"))
+
+
 class CrashHandler(QObject):
     """Catches what nothing else caught, in slots and in threads; ``crashed(sentence)`` tells the window."""
 
@@ -33,19 +48,16 @@ class CrashHandler(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._handler: logging.Handler | None = None
+        self._handler: LogFile | None = None
         self._before = (sys.excepthook, threading.excepthook)
 
     def install(self) -> None:
         """Start logging to the file and take over the hooks."""
         path = log_file()
-        try:
+        with contextlib.suppress(OSError):
+            # Without its folder, every entry fails and says so.
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._handler = logging.handlers.RotatingFileHandler(
-                path, maxBytes=1_000_000, backupCount=2, encoding="utf-8", delay=True
-            )
-        except OSError:
-            self._handler = logging.StreamHandler()
+        self._handler = LogFile(path, maxBytes=1_000_000, backupCount=2, encoding="utf-8", delay=True)
         self._handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
         log.addHandler(self._handler)
         log.setLevel(logging.INFO)
@@ -69,9 +81,14 @@ class CrashHandler(QObject):
             self._before[0](kind, error, trace)
             return
         log.critical("Unexpected error.", exc_info=(kind, error, trace))
+        trouble = "" if self._handler is None else self._handler.trouble
+        where = (
+            f"the log {log_file()} cannot be written ({trouble})"
+            if trouble
+            else f"the details are in {log_file()}"
+        )
         self.crashed.emit(
-            f"Something went wrong that should not ({kind.__name__}: {error}). Your session goes on; "
-            f"the details are in {log_file()}."
+            f"Something went wrong that should not ({kind.__name__}: {error}). Your session goes on; {where}."
         )
 
     def _caught_in_thread(self, caught: Any) -> None:

@@ -68,7 +68,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         _discard_output()
         if error.errno is None:  # raised by a library, not by the system
             return _report(error)
-        where = f"{error.filename}: " if error.filename else ""
+        # Whatever else is opened has a name.
+        where = f"{error.filename}: " if error.filename else "Standard output cannot be written: "
         return _refuse(f"{where}{error.strerror}.")
     except MemoryError:
         return _refuse("There is not enough memory for this; try a smaller size.")

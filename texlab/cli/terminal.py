@@ -10,6 +10,8 @@ import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from texlab_core.files.regular import open_appending
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
@@ -48,7 +50,7 @@ def append_to_log(text: str) -> None:
     log = log_file()
     log.parent.mkdir(parents=True, exist_ok=True)
     when = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    with log.open("a", encoding="utf-8", errors="backslashreplace") as file:
+    with open_appending(log) as file:
         file.write(f"{when} texlab {__version__}\n{text}\n")
 
 
@@ -83,8 +85,11 @@ _interruption = _Interruption()
 
 def interrupted() -> bool:
     """Return whether Ctrl-C was pressed: what commands give to the core as ``should_stop``."""
-    _interruption.heard |= _interruption.pressed
-    return _interruption.pressed
+    # Looked at once: pressed in between, it would be reported and yet not be heard.
+    pressed = _interruption.pressed
+    if pressed:
+        _interruption.heard = True
+    return pressed
 
 
 @contextlib.contextmanager
@@ -92,8 +97,9 @@ def orderly_interrupts() -> Iterator[None]:
     """Within the block, Ctrl-C makes :func:`interrupted` true, and raises ``KeyboardInterrupt`` if nobody asks.
 
     It is never raised where it would be lost: while modules are imported or code is compiled, C libraries turn it
-    into errors of their own. A second Ctrl-C ends the process at once; no file is half written then, because all
-    are renamed into place.
+    into errors of their own. Where Python itself swallows it, in a destructor, it is raised once more. A second
+    Ctrl-C ends the process at once; no file is half written then, because all are renamed into place. A process
+    that was started with the signal ignored, in the background of a script say, goes on ignoring it.
 
     Raises
     ------
@@ -108,25 +114,44 @@ def orderly_interrupts() -> Iterator[None]:
     state.pressed = state.heard = False
 
     def interrupt(number: int, frame: FrameType | None) -> None:
-        if number == signal.SIGINT and state.pressed:
-            _end_at_once()
-        if number == signal.SIGALRM and (state.heard or not _would_be_lost(frame)):
-            if not state.heard:
+        if number == signal.SIGINT:
+            if state.pressed:
+                _end_at_once()
+            # Before the clock is set: however late it is, the alarm finds it so.
+            state.pressed = True
+            # Again and again: an alarm just before a wait begins does not end the wait.
+            signal.setitimer(signal.ITIMER_REAL, _PATIENCE_S, _RETRY_S)
+        elif state.pressed and not state.heard and _would_be_lost(frame):
+            signal.setitimer(signal.ITIMER_REAL, _RETRY_S, _RETRY_S)
+        else:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            if state.pressed and not state.heard:
                 raise KeyboardInterrupt
-            return
-        signal.signal(signal.SIGALRM, interrupt)
-        signal.setitimer(signal.ITIMER_REAL, _RETRY_S if state.pressed else _PATIENCE_S)
-        state.pressed = True
 
+    alarm, unraisable = signal.getsignal(signal.SIGALRM), sys.unraisablehook
+
+    def swallowed(caught: sys.UnraisableHookArgs) -> None:
+        if issubclass(caught.exc_type, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, _RETRY_S, _RETRY_S)
+        else:
+            unraisable(caught)
+
+    sys.unraisablehook = swallowed
+    signal.signal(signal.SIGALRM, interrupt)
     signal.signal(signal.SIGINT, interrupt)
     try:
         yield
     finally:
+        # From here on it is raised at once; what was pressed before is known by then.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         pressed, state.pressed = state.pressed, False
-        # While Python shuts down it has nothing left to do in good order.
-        signal.signal(signal.SIGINT, signal.SIG_DFL if pressed else signal.default_int_handler)
         if pressed:
             signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, alarm)
+        sys.unraisablehook = unraisable
+        if pressed:
+            # While Python shuts down it has nothing left to do in good order.
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
             raise KeyboardInterrupt
 
 

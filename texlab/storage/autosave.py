@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from texlab.runs.worker import Worker
-from texlab.storage.kept_exemplar import has_no_home, keep, kept_path
+from texlab.storage.kept_exemplar import file_name, forget_other_exemplars, has_no_home, keep
 from texlab.storage.kept_inputs import forget_others, keep_inputs, kept_folder
+from texlab.storage.paths import config_dir
 from texlab.storage.settings import session_to_json
 from texlab_core.errors import InputError
+from texlab_core.files.leftovers import sweep
 
 if TYPE_CHECKING:
     from texlab.state.session import Sample, Session, State
@@ -31,6 +33,7 @@ class Autosave(QObject):
         self._session = session
         self._settings = settings
         self._kept: ImageInput | None = None
+        self._swept = False
         self._worker = Worker("autosave", parent=self)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
@@ -54,17 +57,22 @@ class Autosave(QObject):
 
     def _write(self, text: str, sample: Sample, state: State) -> None:
         """Write everything (in the worker's thread, or when that has ended)."""
-        if has_no_home(sample) and sample.source is not self._kept:
+        wanted = file_name(sample.source) if has_no_home(sample) else None
+        if wanted is not None and sample.source is not self._kept:
             try:
-                keep(sample.source, kept_path())
+                keep(sample.source, config_dir())
             except InputError as error:
                 log.warning("The exemplar could not be kept: %s", error)
             self._kept = sample.source
         inputs = [each for column in state.columns for _, each in column.inputs]
-        # The settings on the disk never name a file that is not there.
+        # The settings on the disk never name a file that is not there, nor one with other pixels.
         keep_inputs(inputs, kept_folder())
-        self._settings.write(text)
-        forget_others(inputs, kept_folder())
+        if self._settings.write(text):
+            forget_other_exemplars(wanted, config_dir())
+            forget_others(inputs, kept_folder())
+        for folder in () if self._swept else (kept_folder(), config_dir() / "presets"):
+            sweep(folder)
+        self._swept = True
 
     def close(self) -> None:
         """End the thread, then save for the last time."""

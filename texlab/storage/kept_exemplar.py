@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import io
+import hashlib
+import logging
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from texlab.storage.arrays import compact, pack, unpack
 from texlab.storage.paths import config_dir
 from texlab_core.errors import InputError
 from texlab_core.files.whole import write_whole
@@ -15,13 +16,17 @@ from texlab_core.files.whole import write_whole
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from texlab.state.session import Sample
     from texlab_core.engine.inputs import ImageInput
-    from texlab_core.engine.steps import FloatImage
 
-FILE_NAME = "exemplar.npy"
+log = logging.getLogger(__name__)
+
+# The first versions kept every exemplar under this name.
+FIRST_NAME = "exemplar.npy"
+# 64 megapixels of three floats, and the header.
+MAX_BYTES = 64 * 2**20 * 12 + 2**16
+
+_NAME = re.compile(r"exemplar-[0-9a-f]{32}\.npz")
 
 
 @dataclass(frozen=True)
@@ -32,37 +37,52 @@ class Kept:
     name: str
 
 
-def kept_path() -> Path:
-    """Return where the exemplar is kept (it may not exist)."""
-    return config_dir() / FILE_NAME
-
-
 def has_no_home(sample: Sample) -> bool:
     """Return whether neither a file nor the gallery can bring this exemplar back."""
     return sample.path is None and not sample.source.name.startswith("gallery:")
 
 
-def keep(image: ImageInput, path: Path) -> None:
-    """Write the pixels of an exemplar, in 8 bits where these say the same.
+def file_name(image: ImageInput) -> str:
+    """Return under which name an exemplar is kept: another one has another name, so that none replaces it."""
+    return f"exemplar-{hashlib.sha256(image.sha256.encode()).hexdigest()[:32]}.npz"
+
+
+def kept_exemplar(sample: Any) -> Kept | None:
+    """Return where the exemplar of saved settings lies; None where nothing does."""
+    if not isinstance(sample, dict):
+        return None
+    name = sample.get("kept", FIRST_NAME)
+    if name != FIRST_NAME and not (isinstance(name, str) and _NAME.fullmatch(name)):
+        return None
+    path = config_dir() / name
+    return Kept(path, str(sample.get("name"))) if path.is_file() else None
+
+
+def keep(image: ImageInput, folder: Path) -> Path:
+    """Write the pixels of an exemplar, in 8 bits where these say the same, and return the file.
 
     Raises
     ------
     InputError
         When the file cannot be written.
     """
-    data = io.BytesIO()
-    np.save(data, compact(image.pixels), allow_pickle=False)
+    path = folder / file_name(image)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{path.parent}: cannot be made ({error.strerror}).") from error
-    write_whole(path, data.getvalue())
+        raise InputError(f"{folder}: cannot be made ({error.strerror}).") from error
+    write_whole(path, pack({"pixels": compact(image.pixels)}))
+    return path
 
 
-def compact(pixels: FloatImage) -> FloatImage | NDArray[np.uint8]:
-    """Return pixels in 8 bits where these say the same, else as they are."""
-    levels = np.rint(pixels * 255).astype(np.uint8)
-    return levels if np.array_equal((levels / np.float32(255)).astype(np.float32), pixels) else pixels
+def forget_other_exemplars(wanted: str | None, folder: Path) -> None:
+    """Remove every kept exemplar but the one with this name."""
+    for path in folder.glob("exemplar*.np[yz]"):
+        if path.name != wanted and (path.name == FIRST_NAME or _NAME.fullmatch(path.name)):
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                log.warning("%s could not be removed: %s", path, error)
 
 
 def load(kept: Kept) -> ImageInput:
@@ -76,7 +96,7 @@ def load(kept: Kept) -> ImageInput:
     from texlab_core.images.exemplar import as_exemplar
 
     try:
-        pixels = np.load(kept.path, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
+        return as_exemplar(unpack(kept.path, MAX_BYTES)["pixels"], name=kept.name)
+    except (InputError, KeyError) as error:
+        log.warning("The exemplar of the last session could not be read: %s", error)
         raise InputError("The exemplar of the last session could not be read.") from error
-    return as_exemplar(pixels, name=kept.name)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import logging
 import re
-import zipfile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab.storage.kept_exemplar import compact
+from texlab.storage.arrays import compact, pack, unpack
 from texlab.storage.paths import config_dir
 from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
 from texlab_core.errors import InputError
@@ -31,7 +29,6 @@ SUFFIX = ".npz"
 MAX_BYTES = 2**26
 
 _HASH = re.compile(r"[0-9a-f]{64}")
-_UNREADABLE = (OSError, ValueError, EOFError, KeyError, MemoryError, NotImplementedError, zipfile.BadZipFile)
 
 
 def kept_folder() -> Path:
@@ -108,9 +105,9 @@ def load_input(saved: Any, kind: str, folder: Path) -> Input:
     if not isinstance(sha256, str) or not _HASH.fullmatch(sha256):
         raise InputError(f"{name} has no hash.")
     try:
-        arrays = _unpacked(folder / f"{sha256}{SUFFIX}")
+        arrays = unpack(folder / f"{sha256}{SUFFIX}", MAX_BYTES)
         given = ArraysInput(arrays, name) if kind == "arrays" else _image(arrays, name)
-    except _UNREADABLE as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{name} cannot be read ({error}).") from error
     if given.sha256 != sha256:
         raise InputError(f"{name} is not what was kept.")
@@ -118,18 +115,7 @@ def load_input(saved: Any, kind: str, folder: Path) -> Input:
 
 
 def _packed(given: ImageInput | ArraysInput) -> bytes:
-    arrays = {"pixels": compact(given.pixels)} if isinstance(given, ImageInput) else dict(given.arrays)
-    data = io.BytesIO()
-    np.savez(data, **arrays)
-    return data.getvalue()
-
-
-def _unpacked(path: Path) -> dict[str, NDArray[Any]]:
-    with zipfile.ZipFile(path) as packed:
-        if sum(member.file_size for member in packed.infolist()) > MAX_BYTES:
-            raise ValueError("it is too large")
-    with np.load(path, allow_pickle=False) as loaded:
-        return {name: loaded[name] for name in loaded.files}
+    return pack({"pixels": compact(given.pixels)} if isinstance(given, ImageInput) else given.arrays)
 
 
 def _image(arrays: dict[str, NDArray[Any]], name: str) -> ImageInput:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab.state.changes import Opened
-from texlab.storage.kept_exemplar import Kept, kept_path, load
+from texlab.storage.kept_exemplar import Kept, kept_exemplar, load
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
@@ -111,4 +111,5 @@ def last_exemplar(saved: Any) -> list[Choice]:
         return [Choice(path, box, factor)]
     if name in [entry.uri for entry in gallery()]:
         return [Choice(str(name), box, factor)]
-    return [Choice(Kept(kept_path(), str(name)), box, factor)] if kept_path().is_file() else []
+    kept = kept_exemplar(sample)
+    return [] if kept is None else [Choice(kept, box, factor)]

@@ -6,11 +6,14 @@ import json
 import logging
 from typing import TYPE_CHECKING, Any
 
+from texlab.storage.kept_exemplar import file_name, has_no_home
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
 from texlab_core.engine.job import DEFAULT_SIZE, check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
 from texlab_core.errors import InputError
+from texlab_core.files import strict_json
+from texlab_core.files.regular import read_regular, reason
 from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
@@ -27,6 +30,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 MAX_RECENT = 10
+MAX_BYTES = 2**25
+MAX_DEPTH = 64
 # More than anybody lays side by side; a damaged file must not start thousands.
 MAX_COLUMNS = 100
 
@@ -39,15 +44,16 @@ class Settings:
         self.values: dict[str, Any] = {}
         self.problem = ""
         try:
-            loaded = json.loads(self._path.read_text(encoding="utf-8"))
+            text = read_regular(self._path, MAX_BYTES)
+            loaded = strict_json.loads(text, max_bytes=MAX_BYTES, max_depth=MAX_DEPTH)
             if not isinstance(loaded, dict):
-                raise ValueError("it is no object")
+                raise InputError("It is no object.")
             self.values = loaded
         except FileNotFoundError:
             pass
         except OSError as error:
-            self.problem = f"The settings could not be read ({error.strerror}); the defaults hold."
-        except (ValueError, RecursionError):
+            self.problem = f"The settings could not be read ({reason(error)}); the defaults hold."
+        except InputError:
             self._put_aside()
 
     def _put_aside(self) -> None:
@@ -82,13 +88,15 @@ class Settings:
         """Write the file; a failure is logged, never shown: nothing the user made is lost by it."""
         self.write(self.to_json())
 
-    def write(self, text: str) -> None:
-        """Write this as the file; may be called in any thread."""
+    def write(self, text: str) -> bool:
+        """Write this as the file, and return whether that could be done; may be called in any thread."""
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             write_whole(self._path, text.encode())
         except (OSError, InputError) as error:
             log.warning("The settings could not be saved: %s", error)
+            return False
+        return True
 
 
 def session_to_json(state: State, selected: int) -> dict[str, Any]:
@@ -102,6 +110,8 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
             "scale": state.sample.scale,
             "crop": None if crop is None else [crop.top, crop.left, crop.height, crop.width],
         }
+        if has_no_home(state.sample):
+            sample["kept"] = file_name(state.sample.source)
     places = [column.id for column in state.columns]
     return {
         "sample": sample,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from texlab_core.engine.inputs import Crop
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
+from texlab_core.files.regular import read_regular
 from texlab_core.images.exemplar import as_exemplar, scaled_size
 from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 from texlab_core.images.gallery import CLASSES, PREFIX, find_entry, gallery
@@ -175,10 +176,7 @@ def _lines(files: list[str], folder: Path) -> list[str]:
     found: list[str] = []
     for file in files:
         try:
-            with open(folder / file, "rb") as opened:
-                text = opened.read(MAX_LIST_BYTES + 1)
-            if len(text) > MAX_LIST_BYTES:
-                raise InputError(f"list: {file} is longer than {MAX_LIST_BYTES} bytes.")
+            text = read_regular(folder / file, MAX_LIST_BYTES)
             found += [line.strip() for line in text.decode("utf-8-sig").splitlines() if line.strip()]
         except (OSError, ValueError) as bad:
             if isinstance(bad, InputError):

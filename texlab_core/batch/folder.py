@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
+from texlab_core.files.leftovers import is_leftover
+from texlab_core.files.regular import open_appending
 from texlab_core.files.whole import write_together, write_whole
 
 if TYPE_CHECKING:
@@ -30,7 +32,6 @@ VERSION = 1
 PICTURES, RECORDS, THUMBNAILS, SCRATCH = "pictures", "records", "thumbnails", ".texlab-parcels"
 LOCK = ".texlab-batch.lock"
 TIMES = "times.csv"
-_TEMPORARY = re.compile(r"\.texlab-[0-9a-f]{16}\.tmp")
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class BatchFolder:
                 f"Another batch is at work in {self.path}; wait for its end, or choose another folder."
             )
         self._remove_leftovers()
-        self._times = open(self.path / TIMES, "a", encoding="utf-8", newline="")
+        self._times = open_appending(self.path / TIMES)
         if not self._times.tell():
             self._times.write("job,seconds\r\n")
         return self
@@ -179,7 +180,7 @@ class BatchFolder:
         shutil.rmtree(self.scratch, ignore_errors=True)
         for folder in (self.path, *(self.path / name for name in (PICTURES, RECORDS, THUMBNAILS))):
             for each in os.scandir(folder):
-                if _TEMPORARY.fullmatch(each.name):
+                if is_leftover(each.name):
                     with contextlib.suppress(OSError):
                         os.unlink(each.path)
 

@@ -15,6 +15,7 @@ from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import check_size, default_size
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
+from texlab_core.files.regular import read_regular, reason
 from texlab_core.files.resources import resource
 
 if TYPE_CHECKING:
@@ -184,13 +185,10 @@ def _load_toml(file: Path, what: str) -> Any:
     import tomllib
 
     try:
-        with open(file, "rb") as opened:
-            source = opened.read(strict_json.MAX_BYTES + 1)
-        if len(source) > strict_json.MAX_BYTES:
-            raise PlanError(f"T{what[1:]} is longer than {strict_json.MAX_BYTES} bytes, the most that is read.")
+        source = read_regular(file, strict_json.MAX_BYTES)
         found = tomllib.loads(source.decode("utf-8-sig"))
     except OSError as bad:
-        raise PlanError(f"T{what[1:]} cannot be read ({bad.strerror}).") from bad
+        raise PlanError(f"T{what[1:]} cannot be read ({reason(bad)}).") from bad
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as bad:
         raise PlanError(f"T{what[1:]} is not valid TOML ({str(bad).rstrip('.')}).") from bad
     try:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import re
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from texlab_core.documents.presets import (
     Preset,
@@ -19,9 +19,6 @@ from texlab_core.documents.presets import (
 )
 from texlab_core.files.resources import resource
 from texlab_core.files.strict_json import MAX_BYTES, loads
-
-if TYPE_CHECKING:
-    import os
 
 _MAX_STEM = 240
 
@@ -71,6 +68,10 @@ class PresetStore:
             if path is not None and not replace:
                 raise PresetError(f"There is a preset of {preset.method} called {preset.name} already.")
             path = self._free_path(preset) if path is None else path
+            try:
+                self.folder.mkdir(parents=True, exist_ok=True)
+            except OSError as bad:
+                raise PresetError(f"{self.folder}: cannot be made ({bad.strerror}).") from bad
             write_preset(preset, path)
             return path
 
@@ -98,6 +99,8 @@ class PresetStore:
         self, path: str | os.PathLike[str], *, name: str | None = None, replace: bool = False
     ) -> Preset:
         """Keep a copy of a preset file (under another name), after checking all of it."""
+        if not os.fspath(path):
+            raise PresetError("The name of the preset's file is empty.")
         preset = read_preset(Path(path))
         if name is not None:
             preset = dataclasses.replace(preset, name=check_name(name))

@@ -133,11 +133,11 @@ def check_name(name: Any) -> str:
         ends with a space or a full stop.
     """
     composed: str = unicodedata.normalize("NFC", name) if isinstance(name, str) else name
-    _check_text("name", composed, MAX_NAME)
+    _check_text("The name of a preset", composed, MAX_NAME)
     if any(sign in composed for sign in "/\\") or composed != composed.strip(" ."):
         raise PresetError(
-            "name: must hold no slash and neither start nor end with a space or a full stop, "
-            f"got {strict_json.shorten(composed)}."
+            "The name of a preset can hold no slash (/ or \\) and neither begin nor end with a space or a full "
+            f"stop; \u201c{composed}\u201d does."
         )
     return composed
 
@@ -146,7 +146,7 @@ def _check_text(what: str, given: Any, longest: int, *, empty: bool = False, lin
     seen = given.replace("\n", "").replace("\t", "") if lines and isinstance(given, str) else given
     if not isinstance(given, str) or len(given) > longest or not (given or empty) or not seen.isprintable():
         allowed = f"{'at most' if empty else '1 to'} {longest} printable characters"
-        raise PresetError(f"{what}: must be {allowed}, got {strict_json.shorten(given)}.")
+        raise PresetError(f"{what} must be {allowed}, got {strict_json.shorten(given)}.")
 
 
 def preset_from_json(data: object, *, what: str = "the preset") -> Preset:
@@ -211,16 +211,15 @@ def write_preset(preset: Preset, path: str | os.PathLike[str], *, replace: bool 
     Raises
     ------
     PresetError
-        When it cannot be written, or is there and ``replace`` is false.
+        When it cannot be written, its folder does not exist, or it is there and ``replace`` is false.
     """
     target = Path(path)
-    if not replace and target.exists():
+    if not replace and (target.exists() or target.is_symlink()):
         raise PresetError(f"The file {path} is there already.")
+    if not target.parent.is_dir():
+        raise PresetError(f"The folder {target.parent} does not exist.")
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
         write_whole(target, strict_json.dumps(preset.to_json()).encode())
-    except OSError as bad:
-        raise PresetError(f"{target.parent}: cannot be made ({bad.strerror}).") from bad
     except InputError as bad:
         raise PresetError(str(bad)) from bad
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from texlab_core.documents.beside import MAX_BYTES, read_beside
 from texlab_core.documents.embedding import MAX_DATA_DEPTH
 from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput
 from texlab_core.engine.inputs import Crop
@@ -16,15 +18,15 @@ from texlab_core.engine.registry import Method, find_method
 from texlab_core.engine.sizes import size_from_json
 from texlab_core.errors import InputError, NoRecipeError, RecipeError
 from texlab_core.files import strict_json
+from texlab_core.files.regular import open_regular, read_regular, reason
 from texlab_core.files.wording import sentence_case
+from texlab_core.images.formats import jpeg_text, webp_text
 from texlab_core.images.formats.png_text import SIGNATURE, read_text
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Mapping
 
 KEY = "texlab"
-MAX_BYTES = 32 * 2**20
 _MAX_NAME = 4096
 _MAX_VERSIONS = 64
 _MAX_SIDE = 2**26
@@ -33,8 +35,8 @@ _OLD_DESCRIPTION = re.compile(r'\{\s*"texlab"\s*:')
 _HASH = re.compile(r"[0-9a-f]{64}")
 
 
-def sidecar(path: str | os.PathLike[str]) -> Path:
-    """Return where the recipe of an image lies whose format holds no text."""
+def first_sidecar(path: str | os.PathLike[str]) -> Path:
+    """Return where the first versions put the recipe of a JPEG, which holds its own by now."""
     return Path(path).with_suffix(".texlab.json")
 
 
@@ -44,8 +46,8 @@ def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
     Parameters
     ----------
     source
-        Path or bytes of a PNG or TIFF, path of a JPEG, .npy, GIF or WebP with its ``.texlab.json`` beside it, or
-        such a file itself.
+        Path or bytes of a PNG, TIFF, JPEG or WebP; path of a .npy, GIF, animated WebP, or JPEG of the first
+        versions with its ``.texlab.json`` beside it, or such a file itself.
 
     Raises
     ------
@@ -54,20 +56,21 @@ def read_recipe(source: str | os.PathLike[str] | bytes) -> Recipe:
     """
     if isinstance(source, bytes):
         return _parse(_find(io.BytesIO(source), None, "the file"), "the file")
+    if not os.fspath(source):
+        raise RecipeError("The name of the saved result is empty.")
     path = Path(source)
     name = path.name
     try:
-        if path.is_dir():
-            raise RecipeError(f"{source}: is a folder, not a saved result.")
-        if not path.is_file():
-            raise RecipeError(f"{source}: there is no such file.")
-        with open(path, "rb") as file:
+        with open_regular(source) as file:
             return _parse(_find(file, path, name), name)
     except InputError:
         raise
+    except IsADirectoryError:
+        raise RecipeError(f"{source}: is a folder, not a saved result.") from None
+    except FileNotFoundError:
+        raise RecipeError(f"{source}: there is no such file.") from None
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise RecipeError(f"{source}: cannot be opened ({reason}).") from error
+        raise RecipeError(f"{source}: cannot be opened ({reason(error)}).") from error
 
 
 def recipe_text(path: str | os.PathLike[str]) -> str | None:
@@ -76,7 +79,7 @@ def recipe_text(path: str | os.PathLike[str]) -> str | None:
         read_recipe(path)
     except NoRecipeError:
         return None
-    with open(path, "rb") as file:
+    with open_regular(path) as file:
         text = _find(file, Path(path), Path(path).name)
     return text.decode() if isinstance(text, bytes) else text
 
@@ -91,16 +94,57 @@ def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
             found = read_text(file, KEY, MAX_BYTES)
         elif head.startswith((b"II", b"MM")):
             found = _tiff_description(file)
-        elif _beside(head) and path is not None and sidecar(path).is_file():
-            with open(sidecar(path), "rb") as beside:
-                found = beside.read(MAX_BYTES + 1)
+        elif head.startswith(jpeg_text.SIGNATURE):
+            found = jpeg_text.read_text(file, KEY, MAX_BYTES)
+        elif webp_text.is_webp(head):
+            found = webp_text.read_text(file, KEY, MAX_BYTES)
         elif head.lstrip()[:1] == b"{":
             found = file.read(MAX_BYTES + 1)
     except ValueError as error:
         raise RecipeError(f"The recipe of {name} {error}.") from error
+    if found is None and path is not None and head.startswith((b"\x93NUMPY", b"GIF8", b"RIFF")):
+        file.seek(0)
+        found = read_beside(path, file)
+    if found is None and path is not None and head.startswith(jpeg_text.SIGNATURE):
+        found = _beside(file, path)
     if found is None:
         raise NoRecipeError(f"{sentence_case(name)} holds no recipe; only results that TexLab saved do.")
     return found
+
+
+def _beside(file: BinaryIO, path: Path) -> bytes | None:
+    """Return the recipe beside a JPEG of the first versions, which do not say whose it is; None without one.
+
+    Raises
+    ------
+    NoRecipeError
+        When what lies there is none, that of another image, or might be that of several.
+    """
+    beside = first_sidecar(path)
+    if not beside.exists():
+        return None
+    refusal = (
+        f"{sentence_case(path.name)} holds no recipe, and {beside.name} beside it cannot be taken for its own"
+    )
+    try:
+        text = read_regular(beside, MAX_BYTES)
+        recipe = _parse(text, beside.name)
+    except (OSError, RecipeError) as error:
+        raise NoRecipeError(f"{refusal}: {reason(error)}.") from error
+    if recipe.size != jpeg_text.read_size(file):
+        raise NoRecipeError(f"{refusal}: it makes an image of {recipe.size[1]} x {recipe.size[0]} pixels.")
+    if others := _others_of(path):
+        raise NoRecipeError(f"{refusal}: it may as well be that of {others[0]}.")
+    return text
+
+
+def _others_of(path: Path) -> list[str]:
+    """Return the names of other JPEG files to which a file beside this one may belong."""
+    return sorted(
+        each.name
+        for each in path.parent.iterdir()
+        if each.stem == path.stem and each.suffix.lower() in (".jpg", ".jpeg") and not each.samefile(path)
+    )
 
 
 def _tiff_description(file: BinaryIO) -> str | None:
@@ -124,13 +168,6 @@ def _tiff_description(file: BinaryIO) -> str | None:
     if text.startswith(_TIFF_PREFIX + "{"):
         return text.removeprefix(_TIFF_PREFIX)
     return text if _OLD_DESCRIPTION.match(text) else None
-
-
-def _beside(head: bytes) -> bool:
-    """Return whether a file is of a format that keeps its recipe in a file beside it."""
-    return head.startswith((b"\xff\xd8\xff", b"\x93NUMPY", b"GIF8")) or (
-        head[:4] == b"RIFF" and head[8:12] == b"WEBP"
-    )
 
 
 def _imagej_info(page: Any) -> object:

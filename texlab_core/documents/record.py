@@ -10,20 +10,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.documents.reading import KEY, read_recipe, sidecar
+from texlab_core.documents.beside import sidecar, write_with_recipe
+from texlab_core.documents.reading import KEY, read_recipe
 from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.sizes import size_to_json
-from texlab_core.files.whole import write_together, write_whole
-from texlab_core.images.formats.maps import save_maps
+from texlab_core.files.whole import write_together
+from texlab_core.images.formats.maps import made_folder, map_files, save_maps, unfinished
 from texlab_core.images.formats.volumes import check_volume_format, default_volume_bits, encode_volume
-from texlab_core.images.formats.writing import check_format, default_bits, encode_image, write_image
+from texlab_core.images.formats.writing import check_format, default_bits, encode_image
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from texlab_core.engine.result import Result
-    from texlab_core.engine.steps import FloatImage, FloatVolume
+    from texlab_core.engine.steps import FloatImage
     from texlab_core.images.formats.writing import Bits
 
 __all__ = [
@@ -37,16 +38,21 @@ __all__ = [
     "summary",
 ]
 
-_BESIDE = (".jpg", ".jpeg", ".webp")
-
 
 def save_result(
-    result: Result, path: str | os.PathLike[str], *, bits: Bits | None = None, alpha: FloatImage | None = None
+    result: Result,
+    path: str | os.PathLike[str],
+    *,
+    bits: Bits | None = None,
+    alpha: FloatImage | None = None,
+    maps: str | os.PathLike[str] | None = None,
+    spare: Iterable[str | os.PathLike[str]] = (),
 ) -> None:
-    """Save a result's image, or its volume, with its recipe.
+    """Save a result's image, or its volume, with its recipe, and its maps: all of it or nothing.
 
-    A PNG has the recipe as a text chunk, a TIFF as its description (a stack as ImageJ's info), and a JPEG, WebP or
-    .npy as a file ``.texlab.json`` beside it. The recipe holds every input up to 2 MB.
+    A PNG has the recipe as a text chunk, a TIFF as its description (a stack as ImageJ's info), a JPEG in
+    application segments, a WebP in a chunk, and a .npy in a file ``.texlab.json`` beside it. The recipe holds
+    every input up to 2 MB.
 
     Parameters
     ----------
@@ -58,28 +64,37 @@ def save_result(
         8, 16 or "float" (TIFF only) for each sample; by default the exemplar's own, as far as the format goes.
     alpha
         Transparency to save with the image, (H, W, 1): see :func:`carried_alpha`.
+    maps
+        Folder for the maps and curves (see :func:`save_maps`); None saves none.
+    spare
+        Files that no map may overwrite.
 
     Raises
     ------
     ImageError
         When the format is unknown or cannot hold what is asked.
     InputError
-        When a file cannot be written.
+        When a file cannot be written, or a map would overwrite one that is none; then all stay as they were.
     """
     bits = result_bits(result, path) if bits is None else bits
     suffix = check_result_format(path, bits, len(result.job.size))
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
-    if result.volume is not None:
-        _save_volume(result.volume, path, bits, recipe)
-    elif suffix in _BESIDE:
-        write_together(
-            {
-                sidecar(path): recipe.encode(),
-                Path(path): encode_image(path, result.image, bits=bits, alpha=alpha),
-            }
-        )
+    made = {} if maps is None else map_files(result, Path(maps), spare=[path, sidecar(path), *spare])
+    if result.volume is None:
+        data = encode_image(path, result.image, bits=bits, text={KEY: recipe}, alpha=alpha)
+    elif suffix != ".npy":
+        data = encode_volume(path, result.volume, bits=bits, info=recipe)
     else:
-        write_image(path, result.image, bits=bits, text={KEY: recipe}, alpha=alpha)
+        # The set of a solid has one more file, which cannot be part of that of its maps.
+        write_with_recipe(path, encode_volume(path, result.volume), recipe)
+        if maps is not None:
+            save_maps(result, maps)
+        return
+    if maps is None:
+        write_together({Path(path): data})
+        return
+    with made_folder(Path(maps)):
+        write_together({Path(path): data} | made, manifest=unfinished(made))
 
 
 def result_bits(result: Result, path: str | os.PathLike[str]) -> Bits:
@@ -103,13 +118,6 @@ def check_result_format(path: str | os.PathLike[str], bits: Bits | None = None, 
     if dimensions == 3:
         return check_volume_format(path, bits)
     return check_format(path, 8 if bits is None else bits)
-
-
-def _save_volume(volume: FloatVolume, path: str | os.PathLike[str], bits: Bits, recipe: str) -> None:
-    if Path(path).suffix.lower() == ".npy":
-        write_together({sidecar(path): recipe.encode(), Path(path): encode_volume(path, volume)})
-    else:
-        write_whole(path, encode_volume(path, volume, bits=bits, info=recipe))
 
 
 def carried_alpha(result: Result) -> FloatImage | None:

@@ -9,6 +9,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from texlab_core.errors import InputError
+from texlab_core.files.regular import TooLongError, megabytes, read_regular, reason
 from texlab_core.files.wording import sentence_case
 
 if TYPE_CHECKING:
@@ -52,12 +53,12 @@ def loads(
         repeated key, or half of a surrogate pair. ``str(error)`` is one sentence.
     """
 
-    def refuse(reason: str) -> NoReturn:
-        raise error(f"{sentence_case(what)} {reason}.") from None
+    def refuse(why: str) -> NoReturn:
+        raise error(f"{sentence_case(what)} {why}.") from None
 
     size = len(source) if isinstance(source, bytes) else len(source.encode("utf-8", "surrogatepass"))
     if size > max_bytes:
-        refuse(f"is {_megabytes(size)} long, and at most {_megabytes(max_bytes)} is read")
+        refuse(f"is {megabytes(size)} long, and at most {megabytes(max_bytes)} is read")
     try:
         text = source.decode("utf-8-sig") if isinstance(source, bytes) else source.removeprefix("\ufeff")
     except UnicodeDecodeError:
@@ -92,7 +93,8 @@ def load(
 ) -> Any:
     """Return the data of a JSON file; see :func:`loads`.
 
-    Never reads more than ``max_bytes`` + 1 bytes, so that an endless file does no harm.
+    Only regular files are read, and never more than ``max_bytes`` + 1 bytes of them: pipes, devices and endless
+    files do no harm.
 
     Raises
     ------
@@ -101,13 +103,13 @@ def load(
     """
     name = f"{path}" if what is None else what
     try:
-        with open(path, "rb") as file:
-            source = file.read(max_bytes + 1)
+        source = read_regular(path, max_bytes)
+    except TooLongError:
+        raise error(
+            f"{sentence_case(name)} is longer than {megabytes(max_bytes)}, the most that is read."
+        ) from None
     except (OSError, ValueError) as bad:
-        reason = getattr(bad, "strerror", None) or str(bad)
-        raise error(f"{sentence_case(name)} cannot be read ({reason}).") from bad
-    if len(source) > max_bytes:
-        raise error(f"{sentence_case(name)} is longer than {_megabytes(max_bytes)}, the most that is read.")
+        raise error(f"{sentence_case(name)} cannot be read ({reason(bad)}).") from bad
     return loads(source, what=name, max_bytes=max_bytes, max_depth=max_depth, error=error)
 
 
@@ -200,7 +202,3 @@ def shorten(given: object) -> str:
     """Return a value as a message shows it, at most 40 characters."""
     shown = repr(given)
     return shown if len(shown) <= 40 else shown[:37] + "..."
-
-
-def _megabytes(count: int) -> str:
-    return f"{count} bytes" if count < 10_000 else f"{count / 2**20:.3g} MB"

@@ -15,6 +15,7 @@ from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_from_json, size_to_json
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.files import strict_json
+from texlab_core.files.regular import open_regular, reason
 from texlab_core.files.resources import resource
 from texlab_core.images.formats.png_text import SIGNATURE, read_text
 from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
@@ -300,11 +301,11 @@ def find_sweep(source: str) -> SweepRecipe:
 
 def _from_sheet(path: Path) -> SweepRecipe:
     try:
-        with open(path, "rb") as file:
+        with open_regular(path) as file:
             is_png = file.read(len(SIGNATURE)) == SIGNATURE
             text = read_text(file, TEXT_KEY, strict_json.MAX_BYTES) if is_png else None
     except OSError as bad:
-        raise RecipeError(f"{path}: cannot be opened ({bad.strerror}).") from bad
+        raise RecipeError(f"{path}: cannot be opened ({reason(bad)}).") from bad
     except ValueError as bad:
         raise RecipeError(f"The sheet {path.name} cannot be used ({bad}).") from bad
     if text is None:

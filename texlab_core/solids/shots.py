@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from texlab_core.documents.reading import KEY, sidecar
+from texlab_core.documents.beside import write_with_recipe
+from texlab_core.documents.reading import KEY
 from texlab_core.errors import ImageError, InputError
-from texlab_core.files.whole import write_together, write_whole
+from texlab_core.files.whole import write_whole
 from texlab_core.images.formats.animations import ANIMATED, check_animation, encode_animation
 from texlab_core.images.formats.writing import encode_png
 from texlab_core.solids.pictures import (
@@ -183,4 +184,4 @@ def save_shot(
     if recipe is None or is_png:
         write_whole(path, data)
     else:
-        write_together({sidecar(path): recipe.encode(), Path(path): data})
+        write_with_recipe(path, data, recipe)

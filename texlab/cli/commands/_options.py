@@ -78,27 +78,26 @@ def output_file(text: str) -> Path:
     Raises
     ------
     InputError
-        When it is a folder, or its folder is missing or cannot be written to.
+        When the name is empty, it is no file that can be replaced (a folder, a pipe, a link that leads nowhere,
+        something write-protected), or its folder is missing or cannot be written to.
     """
-    path = Path(text)
-    if path.is_dir():
-        raise InputError(f"{text} is a folder, and a file is wanted.")
-    _check_writable(path.parent)
+    from texlab_core.files.whole import check_target
+
+    path = check_target(text)
+    _check_writable(Path(os.path.realpath(path)).parent)
     return path
 
 
 def output_folder(text: str) -> Path:
-    """Return the path of a folder that can be written to, made if need be; raises ``InputError``."""
+    """Return the path of a folder that can be written to, or made in one that is there; raises ``InputError``."""
     path = Path(text)
     if not text:
         raise InputError("The name of the folder is empty.")
     if path.exists() and not path.is_dir():
         raise InputError(f"{text} is a file, and a folder is wanted.")
+    if path.is_symlink() and not path.exists():
+        raise InputError(f"{text} is a link to a folder that does not exist.")
     _check_writable(path if path.exists() else path.parent)
-    try:
-        path.mkdir(exist_ok=True)
-    except ValueError as error:
-        raise InputError(f"{text!r} is no name for a folder ({error}).") from error
     return path
 
 

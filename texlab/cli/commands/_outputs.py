@@ -59,7 +59,7 @@ def check_outputs(args: argparse.Namespace, bits: Bits | None, dimensions: int =
 
 def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
     """Run a job and save what it makes; the sources to ``keep`` are not overwritten by maps."""
-    from texlab_core.documents.record import carried_alpha, save_maps, save_result
+    from texlab_core.documents.record import carried_alpha, save_result
     from texlab_core.engine.run import run
     from texlab_core.images.formats.writing import can_hold_alpha
 
@@ -67,9 +67,7 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
         result = run(job, show, interrupted)
     flat = result.volume is None and can_hold_alpha(outputs.image)
     alpha = carried_alpha(result) if flat else None
-    save_result(result, outputs.image, bits=outputs.bits, alpha=alpha)
-    if outputs.maps is not None:
-        save_maps(result, outputs.maps, spare=[outputs.image, *keep])
+    save_result(result, outputs.image, bits=outputs.bits, alpha=alpha, maps=outputs.maps, spare=keep)
     return result
 
 

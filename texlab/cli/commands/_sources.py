@@ -212,11 +212,12 @@ def _load_arrays(path: Path) -> Input:
     import numpy as np
 
     from texlab_core.engine.inputs import ArraysInput
+    from texlab_core.files.regular import open_regular
 
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with open_regular(path) as file, np.load(file, allow_pickle=False) as held:
             return ArraysInput({name: held[name] for name in held.files}, path.name)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror or error}).") from error
-    except (AttributeError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except (AttributeError, TypeError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise InputError(f"{path}: is no .npz file of arrays.") from error

@@ -110,8 +110,11 @@ def _import(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
 
 def _export(args: argparse.Namespace, store: PresetStore) -> tuple[Any, str]:
     from texlab_core.documents.preset_store import export_preset, find_preset
+    from texlab_core.errors import InputError
 
     preset = find_preset(args.preset, store, args.method)
+    if not args.out:
+        raise InputError("The name of the file or folder to write is empty.")
     path = export_preset(preset, args.out, replace=args.replace)
     return preset.to_json() | {"file": str(path)}, f"Exported {preset.method}/{preset.name} to {path}."
 

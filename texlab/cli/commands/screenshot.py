@@ -39,11 +39,11 @@ def execute(args: argparse.Namespace) -> int:
         from texlab_core.images.gallery import find_entry
 
         args.gallery = find_entry(args.gallery).name
-    require_qt()
     # An empty value is no choice of a platform either.
     os.environ["QT_QPA_PLATFORM"] = os.environ.get("QT_QPA_PLATFORM") or "offscreen"
     # This platform warns of window hints that it has no use for.
     os.environ.setdefault("QT_LOGGING_RULES", "default.warning=false")
+    require_qt()
     from texlab.app.screenshot import screenshot
 
     return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import hashlib
 import io
 import os
 import re
@@ -18,7 +20,7 @@ from texlab_core.files.whole import write_together
 from texlab_core.images.formats.writing import encode_png
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -55,13 +57,54 @@ def save_maps(
     Raises
     ------
     InputError
-        When one cannot be written, or would overwrite a spared one; then none is.
+        When one cannot be written, or would overwrite a file that no earlier maps brought; then none is.
     """
     target = Path(folder)
+    files = map_files(result, target, spare=spare)
+    with made_folder(target):
+        write_together(files, manifest=unfinished(files))
+    return tuple(files)
+
+
+def unfinished(files: Iterable[Path]) -> tuple[Path, bytes]:
+    """Return the index of maps that are just being written, and what it holds meanwhile: no maps, only names."""
+    *others, index = files
+    earlier = _earlier(index.parent) | {each.name for each in others}
+    data = {"maps": {}, "curves": {}, "earlier": sorted(earlier - {INDEX})}
+    return index, strict_json.dumps(data).encode()
+
+
+@contextlib.contextmanager
+def made_folder(folder: Path) -> Iterator[None]:
+    """Make a folder, with those above it; what was made is taken away again when the block fails.
+
+    Raises
+    ------
+    InputError
+        When it cannot be made.
+    """
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
     try:
-        target.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{target}: cannot be made ({error.strerror}).") from error
+        raise InputError(f"{folder}: cannot be made ({error.strerror}).") from error
+    try:
+        yield
+    except BaseException:
+        with contextlib.suppress(OSError):
+            for each in made:
+                each.rmdir()
+        raise
+
+
+def map_files(result: Result, folder: Path, *, spare: Iterable[str | os.PathLike[str]] = ()) -> dict[Path, bytes]:
+    """Return what :func:`save_maps` writes, by path; the index is the last and has the SHA-256 of the others.
+
+    Raises
+    ------
+    InputError
+        When one would overwrite a spared file, or one in the folder that its index does not name.
+    """
     extent = _source_extent(result)
     contents: dict[str, bytes] = {}
     index: dict[str, Any] = {"maps": {}, "curves": {}}
@@ -74,13 +117,31 @@ def save_maps(
         stem = _stem(name)
         contents[f"{stem}.csv"] = _csv(curve)
         index["curves"][name] = {"title": curve.title, "file": f"{stem}.csv"}
+    earlier = _earlier(folder)
+    index["sha256"] = {file: hashlib.sha256(data).hexdigest() for file, data in contents.items()}
+    if left := sorted(file for file in earlier - {INDEX, *contents} if (folder / file).exists()):
+        index["earlier"] = left
     contents[INDEX] = strict_json.dumps(index).encode()
-    files = {target / file: data for file, data in contents.items()}
-    for file in files:
-        if any(_same_file(file, each) for each in spare):
-            raise InputError(f"{file} would be overwritten by a map; choose another folder for the maps.")
-    write_together(files)
-    return tuple(files)
+    for file in contents:
+        path = folder / file
+        if any(_same_file(path, each) for each in spare):
+            raise InputError(f"{path} would be overwritten by a map; choose another folder for the maps.")
+        if path.exists() and file not in earlier:
+            raise InputError(
+                f"{path} is there already, and no earlier maps brought it; choose another folder for the maps."
+            )
+    return {folder / file: data for file, data in contents.items()}
+
+
+def _earlier(folder: Path) -> set[str]:
+    """Return the names of the files in a folder that an earlier result's maps have brought."""
+    try:
+        index = strict_json.load(folder / INDEX)
+        maps = [file for each in index["maps"].values() for file in each["files"]]
+        curves = [each["file"] for each in index["curves"].values()]
+        return {INDEX, *maps, *curves, *(str(file) for file in index.get("earlier", []))}
+    except (InputError, AttributeError, KeyError, TypeError):
+        return set()
 
 
 def _same_file(one: Path, other: str | os.PathLike[str]) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 
 from texlab_core.errors import ImageError
 from texlab_core.files.whole import write_whole
+from texlab_core.images.formats import jpeg_text, webp_text
 from texlab_core.images.formats.png_text import with_chunk, with_text
 
 if TYPE_CHECKING:
@@ -76,8 +77,8 @@ def encode_image(
     bits
         8, 16 or "float" for each sample.
     text
-        Texts by key, for PNG; a TIFF takes one ASCII text, its description, after the word TexLab: what starts
-        with a brace and has a "shape" is taken by other programs for a description of theirs.
+        Texts by key, for PNG, JPEG and WebP; a TIFF takes one ASCII text, its description, after the word TexLab:
+        what starts with a brace and has a "shape" is taken by other programs for a description of theirs.
     alpha
         (H, W) or (H, W, 1) floats in [0, 1], for all formats but JPEG; colours are not multiplied by it.
 
@@ -222,8 +223,6 @@ def _encode_tiff(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
 def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str) -> bytes:
     import imagecodecs
 
-    if text:
-        raise ValueError("A WebP file takes no text.")
     if max(values.shape[:2]) > _MAX_WEBP_SIDE:
         raise ImageError(
             f"{name}: a WebP file has at most {_MAX_WEBP_SIDE} pixels in a side, got {values.shape[1]} x "
@@ -234,15 +233,19 @@ def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str
     # The format has no gray.
     rgb = np.repeat(planes[..., :1], 3, axis=2) if colours == 1 else planes[..., :3]
     whole = np.ascontiguousarray(np.concatenate([rgb, planes[..., colours:]], axis=2))
-    return bytes(imagecodecs.webp_encode(whole, lossless=True))
+    webp = bytes(imagecodecs.webp_encode(whole, lossless=True))
+    for key, each in (text or {}).items():
+        webp = webp_text.with_text(webp, key, each)
+    return webp
 
 
 def _encode_jpeg(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
     from PIL import Image
 
-    if text:
-        raise ValueError("A JPEG file takes no text.")
     out = io.BytesIO()
     # Colour at full resolution: textures have fine colour.
     Image.fromarray(values).save(out, "JPEG", quality=_JPEG_QUALITY, subsampling=0)
-    return out.getvalue()
+    jpeg = out.getvalue()
+    for key, each in (text or {}).items():
+        jpeg = jpeg_text.with_text(jpeg, key, each)
+    return jpeg
