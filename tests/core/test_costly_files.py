@@ -116,6 +116,47 @@ def test_costly_files(name, says, monkeypatch):
         as_exemplar(CASES / name)
 
 
+def gif_of_many_blocks(count):
+    out = io.BytesIO()
+    Image.fromarray(RGB[..., 0]).save(out, "GIF")
+    data = out.getvalue()
+    return data[:-1] + b"!\xfe" + b"\x01a" * count + b"\0" + data[-1:]
+
+
+def test_blocks_of_a_gif_are_not_counted_without_end(monkeypatch):
+    assert "frames" not in "".join(as_exemplar(gif_of_many_blocks(100)).notes)
+    monkeypatch.setattr("texlab_core.images.formats.older._MAX_GIF_BLOCKS", 50)
+    assert "The file has 1 frames or more; the first one was used." in as_exemplar(gif_of_many_blocks(100)).notes
+
+
+def test_chunks_of_a_png_are_not_counted_without_end(monkeypatch):
+    data = small_png()
+    many = data[:33] + chunk(b"teXt", b"") * 100 + data[33:]
+    assert as_exemplar(many).size == (48, 40)
+    monkeypatch.setattr("texlab_core.images.formats.png._MAX_CHUNKS", 50)
+    with pytest.raises(ImageError, match="it has no image data"):
+        as_exemplar(many)
+
+
+def test_pages_of_a_tiff_are_not_looked_at_without_end(monkeypatch):
+    out = io.BytesIO()
+    with tifffile.TiffWriter(out) as writer:
+        for side in range(4, 24):
+            writer.write(np.full((side, side), side, np.uint8), photometric="minisblack", metadata=None)
+    assert as_exemplar(out.getvalue()).size == (23, 23)
+    monkeypatch.setattr("texlab_core.images.formats.tiff_pages._MAX_ENTRIES", 100)
+    assert as_exemplar(out.getvalue()).size[0] < 15
+
+
+def test_parts_that_lie_on_each_other_are_refused():
+    data = bytearray(tiff_around(bytes(768), None))
+    with tifffile.TiffFile(io.BytesIO(bytes(data))) as tiff:
+        place = tiff.pages[0].tags["StripByteCounts"]
+    data[place.valueoffset : place.valueoffset + 4] = struct.pack("<I", 2**30)
+    with pytest.raises(ImageError, match="is a TIFF whose parts are larger than the file that holds them"):
+        as_exemplar(bytes(data))
+
+
 def test_compressions_without_a_known_header_are_refused():
     data = tiff_around(imagecodecs.jpegxr_encode(RGB[:16, :16]), "jpegxr")
     with pytest.raises(ImageError, match=r"is a TIFF compressed by JPEGXR\w*, which TexLab does not read"):

@@ -112,7 +112,7 @@ def transparent_part(source: str) -> ImageInput:
 
     if source.startswith("gallery:"):
         raise InputError(f"{source} has no transparency; give --mask.")
-    decoded = read_image(Path(source), source)
+    decoded = read_image(Path(source), source, should_stop=interrupted)
     if decoded.values.shape[2] not in (2, 4):
         raise InputError(f"{source} has no transparency; give --mask.")
     opaque = 1.0 if decoded.peak is None else decoded.peak

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from texlab_core.images.formats.decoded import Gate
 
 _TGA_KINDS = (1, 2, 3, 9, 10, 11)
+_MAX_GIF_BLOCKS = 300_000
 _TGA_BITS = (8, 15, 16, 24, 32)
 _TGA_FOOTER = b"TRUEVISION-XFILE.\0"
 
@@ -43,9 +44,14 @@ def _frames(head: bytes, file: BinaryIO) -> tuple[str, ...]:
     """Say that there is more than one frame; counted by the blocks of the file (GIF89a, appendix B)."""
     table = 3 << (1 + (head[10] & 7)) if head[10] & 0x80 else 0
     file.seek(13 + table)
-    count = 0
-    for _ in range(1_000_000):
+    count, inside = 0, False
+    for _ in range(_MAX_GIF_BLOCKS):
         kind = file.read(1)
+        if inside:
+            # Parts of a block: each begins with its length, and the last has none.
+            inside = kind not in (b"", b"\0")
+            file.seek(kind[0] if inside else 0, 1)
+            continue
         if kind == b"!":
             file.seek(1, 1)
         elif kind == b",":
@@ -54,8 +60,9 @@ def _frames(head: bytes, file: BinaryIO) -> tuple[str, ...]:
             file.seek((3 << (1 + (flags[0] & 7)) if flags and flags[0] & 0x80 else 0) + 1, 1)
         else:
             break
-        while (length := file.read(1)) not in (b"", b"\0"):
-            file.seek(length[0], 1)
+        inside = True
+    else:
+        return (f"The file has {count} frames or more; the first one was used.",)
     return (f"The file has {count} frames; the first one was used.",) if count > 1 else ()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -11,13 +10,16 @@ from texlab_core.images.formats import headers
 from texlab_core.images.formats.jpeg import check_scans
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from texlab_core.images.formats.decoded import Gate
 
 _REDUCED, _MASK = 1, 4
 _RAW = (32803, 34892)
 _MAX_PAGES = 1000
+_MAX_ENTRIES = 2_000_000
+# Parts may lie on each other, as empty tiles do, but not so that a small file is read over and over.
+_MOST_OVERLAP = 4
 _HEAD = 2**16
 _MIB = 2**20
 # Compressions whose decoders are told how many bytes to make at most.
@@ -50,8 +52,8 @@ def choose_page(tiff: Any, name: str, notes: list[str]) -> Any:
     ImageError
         When that page is a raw photograph.
     """
-    first = list(itertools.islice(tiff.pages, _MAX_PAGES))
-    pages = [*first, *itertools.islice((each for page in first for each in _inner_pages(page)), _MAX_PAGES)]
+    first = _within_reason(tiff.pages)
+    pages = [*first, *_within_reason(each for page in first if page.subifds for each in page.pages)]
     whole = [page for page in pages if not int(page.subfiletype) & (_REDUCED | _MASK)] or pages[:1]
     page = max(whole, key=lambda page: page.imagewidth * page.imagelength)
     if int(page.photometric) in _RAW:
@@ -68,9 +70,16 @@ def choose_page(tiff: Any, name: str, notes: list[str]) -> Any:
     return page
 
 
-def _inner_pages(page: Any) -> Iterator[Any]:
-    if page.subifds:
-        yield from itertools.islice(page.pages, _MAX_PAGES)
+def _within_reason(pages: Iterable[Any]) -> list[Any]:
+    """Return the first pages, as many as a file needs that is not made to waste time."""
+    found: list[Any] = []
+    entries = 0
+    for page in pages:
+        found.append(page)
+        entries += len(page.tags) + len(page.dataoffsets)
+        if len(found) == _MAX_PAGES or entries > _MAX_ENTRIES:
+            break
+    return found
 
 
 def check_cost(page: Any, file: BinaryIO, gate: Gate) -> None:
@@ -89,6 +98,8 @@ def check_cost(page: Any, file: BinaryIO, gate: Gate) -> None:
     # A tile may be larger than its image, and is decoded whole.
     if high * wide > 4 * max(width * height, _MIB):
         raise ImageError(f"{name}: is a TIFF with tiles that are too large.")
+    if sum(page.databytecounts) > _MOST_OVERLAP * gate.length + _MIB:
+        raise ImageError(f"{name}: is a TIFF whose parts are larger than the file that holds them.")
     effort, scans = 1.0, 1
     if compression in _CODED:
         effort = 1.0 if compression in _JPEG else float("inf")
