@@ -21,6 +21,7 @@ from texlab_core.images import exemplar as door
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats import decoded, jpeg, webp_text
 from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.tiff_reducing import _starts
 from texlab_core.images.formats.writing import default_bits, encode_image, named_with_suffix, write_image
 from texlab_core.images.reducing import area_weights
 
@@ -311,6 +312,7 @@ def small_limits(monkeypatch):
     monkeypatch.setattr(door, "MAX_PIXELS", 1000)
     monkeypatch.setattr(decoded, "MAX_REDUCED", 8000)
     monkeypatch.setattr(jpeg, "MAX_REDUCED", 8000)
+    monkeypatch.setattr("texlab_core.images.formats.tiff_reducing.MAX_REDUCED", 8000)
     monkeypatch.setattr("texlab_core.images.unit_range._ROWS_BYTES", 3000)
 
 
@@ -370,6 +372,38 @@ def test_jpeg_comes_down_in_its_decoder(small_limits):
     assert np.abs(made.pixels - right).max() < 0.02
     with pytest.raises(ImageError, match="are scaled down or cropped"):
         as_exemplar(out.getvalue(), scale=0.6)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize(
+    "options", [{"tile": (32, 48)}, {"rowsperstrip": 7}, {"tile": (16, 16), "compression": "zlib"}]
+)
+@pytest.mark.parametrize("photometric", ["rgb", "minisblack", "miniswhite"])
+def test_tiff_comes_down_part_by_part(dtype, options, photometric, small_limits):
+    peak = np.iinfo(dtype).max
+    channels = 3 if photometric == "rgb" else 1
+    values = np.random.default_rng(7).integers(0, peak, (160, 200, channels), dtype=dtype, endpoint=True)
+    out = io.BytesIO()
+    stored = values if channels == 3 else values[..., 0]
+    tifffile.imwrite(out, stored, photometric=photometric, metadata=None, **options)
+    made = as_exemplar(out.getvalue(), scale=0.1)
+    right = values.reshape(16, 10, 20, 10, channels).mean(axis=(1, 3)) / peak
+    assert made.size == (16, 20)
+    # Halves of the picture are averaged in integers of 16 bits.
+    assert np.abs(made.pixels - (1 - right if photometric == "miniswhite" else right)).max() < 2e-5
+    assert made.depth == (8 if dtype == np.uint8 else 16)
+    turned = io.BytesIO()
+    tifffile.imwrite(turned, stored, photometric=photometric, metadata=None, extratags=[(274, "H", 1, 6, True)])
+    assert as_exemplar(turned.getvalue(), scale=0.1).size == (20, 16)
+    with pytest.raises(ImageError, match="are scaled down or cropped"):
+        as_exemplar(out.getvalue(), scale=0.6)
+
+
+@pytest.mark.parametrize(("first", "count", "factor"), [(0, 7, 3), (5, 9, 4), (8, 4, 4), (3, 2, 5)])
+def test_block_starts_by_hand(first, count, factor):
+    blocks = (first + np.arange(count)) // factor
+    right = [index for index in range(count) if index == 0 or blocks[index] != blocks[index - 1]]
+    assert _starts(first, count, factor).tolist() == right
 
 
 def test_what_is_used_of_a_picture_is_said():

@@ -12,6 +12,7 @@ from texlab_core.engine.job import MAX_PIXELS
 from texlab_core.errors import ImageError
 from texlab_core.images.formats.decoded import Decoded, oriented
 from texlab_core.images.formats.tiff_pages import check_cost, choose_page
+from texlab_core.images.formats.tiff_reducing import reduced_samples, reducing_factor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,28 +40,34 @@ def read_tiff(file: BinaryIO, gate: Gate) -> Decoded:
     with tifffile.TiffFile(file, name="image.tif") as tiff:
         page = choose_page(tiff, gate.name, notes)
         photometric = int(page.photometric)
-        gate.admit(int(page.imagewidth), int(page.imagelength), effort=0.0)
-        _check_page(page, photometric, gate.name)
-        check_cost(page, file, gate)
+        width, height = int(page.imagewidth), int(page.imagelength)
+        factor = reducing_factor(page, gate)
+        made = -(-width // factor) * -(-height // factor)
+        gate.admit(width, height, effort=0.0, decoded=made)
+        _check_page(page, photometric, made, gate.name)
+        check_cost(page, file, gate, made)
         _check_complete(page, file)
-        values = _samples(page)
         peak: int | None
-        if photometric == _PALETTE:
-            values, peak = _look_up(values[..., 0], page.colormap)
+        if factor > 1:
+            values, peak = reduced_samples(page, factor), 65535
+        elif photometric == _PALETTE:
+            values, peak = _look_up(_samples(page)[..., 0], page.colormap)
         else:
-            values, peak = _stored(values, page, notes)
+            values, peak = _stored(_samples(page), page, notes)
         if photometric == _WHITE_IS_ZERO:
             values[..., 0] = (1 if peak is None else peak) - values[..., 0]
         values, premultiplied = _drop_extra(values, page, photometric, notes)
-        stored = Decoded(values, peak).depth
+        stored = Decoded(values, peak).depth if factor == 1 or page.bitspersample == 16 else 8
         profile = page.tags.get("InterColorProfile")
         values, peak = _in_srgb(values, peak, None if profile is None else profile.value, photometric, gate, notes)
         orientation = page.tags.get("Orientation")
-        values = oriented(values, 1 if orientation is None else int(orientation.value), notes)
-    return Decoded(values, peak, tuple(notes), premultiplied, stored)
+        turn = 1 if orientation is None else int(orientation.value)
+        values = oriented(values, turn, notes)
+        whole = (width, height) if turn in range(5, 9) else (height, width)
+    return Decoded(values, peak, tuple(notes), premultiplied, stored, whole if factor > 1 else None)
 
 
-def _check_page(page: Any, photometric: int, name: str) -> None:
+def _check_page(page: Any, photometric: int, made: int, name: str) -> None:
     samples = page.samplesperpixel
     known = photometric in _COLOURS and (photometric != _YCBCR or int(page.compression) in _JPEG)
     ink_set = page.tags.get("InkSet")
@@ -73,7 +80,7 @@ def _check_page(page: Any, photometric: int, name: str) -> None:
     if page.imagedepth != 1 or samples > _MAX_SAMPLES:
         raise ImageError(f"{name}: is a TIFF volume or stack of {samples} channels, not an image.")
     # A few compressed megabytes may decode to very many.
-    if page.imagewidth * page.imagelength * samples * page.dtype.itemsize > _MAX_BYTES:
+    if made * samples * page.dtype.itemsize > _MAX_BYTES:
         raise ImageError(
             f"{name}: has {samples} channels of {page.dtype} in {page.imagewidth} x {page.imagelength} pixels; "
             f"at most {_MAX_BYTES // 2**30} GB are decoded."

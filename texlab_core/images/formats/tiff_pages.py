@@ -82,8 +82,19 @@ def _within_reason(pages: Iterable[Any]) -> list[Any]:
     return found
 
 
-def check_cost(page: Any, file: BinaryIO, gate: Gate) -> None:
+def check_cost(page: Any, file: BinaryIO, gate: Gate, made: int) -> None:
     """Let the page through the gate by what its parts say of themselves, before any of them is decoded.
+
+    Parameters
+    ----------
+    page
+        Of the file.
+    file
+        Where its parts are.
+    gate
+        See :class:`Gate`.
+    made
+        Pixels that are kept of it.
 
     Raises
     ------
@@ -115,10 +126,12 @@ def check_cost(page: Any, file: BinaryIO, gate: Gate) -> None:
     elif compression not in _BOUNDED:
         kind = getattr(page.compression, "name", str(compression))
         raise ImageError(f"{name}: is a TIFF compressed by {kind}, which TexLab does not read.")
-    made = max(width * height, math.prod(page.chunked[:2]) * high * wide) if page.is_tiled else width * height
+    # Tiles are decoded whole, and so are the pixels that a reduced picture loses.
+    decoded = max(width * height, math.prod(page.chunked[:2]) * high * wide)
     bytes_each = int(page.samplesperpixel) * page.dtype.itemsize
+    effort = max(effort, 0.7 * scans, bytes_each / 4) * decoded / made
     gate.admit(
-        width, height, bytes_each=2 * bytes_each, effort=max(effort, 0.7 * scans, bytes_each / 4), decoded=made
+        width, height, bytes_each=4 * bytes_each, effort=effort, decoded=made, memory=8 * high * wide * bytes_each
     )
 
 
