@@ -29,6 +29,7 @@ from texlab_core.files import strict_json
 from texlab_core.files.regular import open_regular, read_regular
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats import maps
+from texlab_core.images.formats.volumes import read_volume
 from texlab_core.methods.spectral.codefile import load_code_input, read_code
 from texlab_core.sheets.sweep_recipes import find_sweep
 
@@ -126,6 +127,8 @@ READERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
     "source of the window": ("a.png", read_source),
     "settings": ("settings.json", read_settings),
     "arrays of the command line": ("a.npz", _load_arrays),
+    "solid": ("a.npy", read_volume),
+    "solid as a stack": ("a.tif", read_volume),
     "kept exemplar": ("exemplar.npy", lambda path: load_kept(Kept(path, "x"))),
     "kept mask": (
         f"{DIGEST}.npz",
@@ -245,6 +248,7 @@ ALLOWED = {
     ("texlab_core/batch/processes.py", "np.load"),
     # The system's own.
     ("texlab/app/memory.py", "Path('/proc/self/statm').read_text"),
+    ("texlab_core/work/memory.py", "Path(path).read_text"),
 }
 
 

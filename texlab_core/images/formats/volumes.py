@@ -12,6 +12,7 @@ import numpy as np
 
 from texlab_core.engine.sizes import MAX_PIXELS
 from texlab_core.errors import ImageError
+from texlab_core.files.regular import open_regular
 from texlab_core.images.formats.decoded import Decoded
 from texlab_core.images.formats.writing import Bits, quantize
 
@@ -127,7 +128,7 @@ def read_volume(path: str | os.PathLike[str]) -> Decoded:
     """
     name = os.fspath(path)
     try:
-        with open(path, "rb") as file:
+        with open_regular(path) as file:
             values = _read_npy(file) if Path(path).suffix.lower() == ".npy" else _read_stack(file)
     except OSError as error:
         raise ImageError(f"{name}: cannot be opened ({error.strerror}).") from error
