@@ -107,7 +107,11 @@ class Failing:
             2,
             "texlab: a.png: No such file or directory.\n",
         ),
-        (OSError(28, "No space left on device"), 2, "texlab: No space left on device.\n"),
+        (
+            OSError(28, "No space left on device"),
+            2,
+            "texlab: Standard output cannot be written: No space left on device.\n",
+        ),
         (MemoryError(), 2, "texlab: There is not enough memory for this; try a smaller size.\n"),
         (KeyboardInterrupt(), 130, ""),
         (Cancelled(), 130, ""),
@@ -116,7 +120,7 @@ class Failing:
 def test_errors_become_one_sentence_and_an_exit_code(
     texlab: Texlab, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, said: str
 ) -> None:
-    monkeypatch.setattr(cli, "find_commands", lambda: {"fail": Failing(error)})
+    monkeypatch.setattr(cli, "find_commands", lambda names: {"fail": Failing(error)})
     shown = texlab("fail", "--json")
     assert (shown.code, shown.out, shown.err) == (code, "", said)
 
@@ -126,7 +130,7 @@ def test_an_unexpected_error_is_logged_and_said_in_one_sentence(
 ) -> None:
     # An OSError without a number comes from a library, not from the system.
     for error in (ZeroDivisionError("one\ntwo"), OSError("one two")):
-        monkeypatch.setattr(cli, "find_commands", lambda error=error: {"fail": Failing(error)})
+        monkeypatch.setattr(cli, "find_commands", lambda names, error=error: {"fail": Failing(error)})
         shown = texlab("fail")
         log = texlab_home / "log" / "texlab.log"
         assert shown.code == 1
@@ -140,7 +144,7 @@ def test_a_log_that_cannot_be_written_is_said_too(
     texlab: Texlab, monkeypatch: pytest.MonkeyPatch, texlab_home: Path
 ) -> None:
     texlab_home.write_text("in the way")
-    monkeypatch.setattr(cli, "find_commands", lambda: {"fail": Failing(ZeroDivisionError("x"))})
+    monkeypatch.setattr(cli, "find_commands", lambda names: {"fail": Failing(ZeroDivisionError("x"))})
     shown = texlab("fail")
     assert shown.code == 1
     assert "could not be written" in shown.err
@@ -176,6 +180,22 @@ def test_asking_imports_nothing_heavy(arguments: list[str]) -> None:
     done = python(code, *arguments)
     assert done.returncode == 0
     assert done.stderr == "[]\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "commands"),
+    [(["--version"], []), (["synth", "--help"], ["synth"]), (["gallery", "--json"], ["gallery"])],
+    ids=lambda value: " ".join(value),
+)
+def test_only_the_command_that_is_named_is_imported(arguments: list[str], commands: list[str]) -> None:
+    code = (
+        "import sys\nfrom texlab.cli.main import main\nmain(sys.argv[1:])\n"
+        "names = sorted(name.removeprefix('texlab.cli.commands.') for name in sys.modules "
+        "if name.startswith('texlab.cli.commands.') and '._' not in name)\n"
+        "heavy = [name for name in ('numpy', 'texlab_core.engine.registry') if name in sys.modules]\n"
+        "print(names, heavy, file=sys.stderr)"
+    )
+    assert python(code, *arguments).stderr == f"{commands} []\n"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")

@@ -57,7 +57,13 @@ def test_a_missing_library_is_said_in_one_sentence(texlab: Texlab, monkeypatch: 
 def test_a_screenshot_has_width_first_and_a_known_texture(texlab: Texlab, calls: list[Any]) -> None:
     options = ("--size", "1000x700", "--theme", "light", "--gallery", "gallery:oriented-zebra")
     assert texlab("screenshot", "--out", "a.png", *options).code == 0
-    assert calls == [(Path("a.png"), {"size": (1000, 700), "theme": "light", "gallery": "oriented-zebra"})]
+    given = {"size": (1000, 700), "theme": "light", "gallery": "oriented-zebra", "columns": None}
+    assert calls == [(Path("a.png"), given)]
+
+
+def test_a_screenshot_shows_the_columns_that_are_named(texlab: Texlab, calls: list[Any]) -> None:
+    assert texlab("screenshot", "--out", "a.png", "--columns", "tiling, pixels,tiling").code == 0
+    assert calls[0][1]["columns"] == ["tiling", "pixels", "tiling"]
 
 
 @pytest.mark.parametrize(
@@ -69,6 +75,12 @@ def test_a_screenshot_has_width_first_and_a_known_texture(texlab: Texlab, calls:
         (["--out", "a.png", "--size", "100000x100"], "size: must be at most 8192 pixels a side"),
         (["--out", "a.png", "--gallery", "oriented-zebr"], "did you mean oriented-zebra"),
         (["--out", "a.png", "--theme", "pink"], "invalid choice"),
+        (["--out", "a.png", "--columns", "tilin"], "did you mean tiling"),
+        (["--out", "a.png", "--columns", ""], "method: must be"),
+        (
+            ["--out", "a.png", "--columns", ",".join(["tiling"] * 13)],
+            "columns: must be at most 12 methods",
+        ),
     ],
 )
 def test_mistakes_are_refused_before_the_window_is_made(
@@ -90,7 +102,7 @@ def without_display() -> dict[str, str]:
 def test_the_real_window_is_drawn_off_screen(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "texlab", "screenshot", "--out", str(tmp_path / "window.png")]
     done = subprocess.run(
-        [*command, "--size", "1100x750", "--gallery", "oriented-zebra"],
+        [*command, "--size", "1100x750", "--gallery", "oriented-zebra", "--columns", "tiling,heeger-bergen"],
         capture_output=True,
         text=True,
         env=without_display(),

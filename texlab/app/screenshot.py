@@ -12,6 +12,7 @@ from texlab.style.theme import ThemeSource
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     from texlab.app.explorer import Explorer
 
@@ -19,7 +20,12 @@ SCREENSHOT_LIMIT_MS = 120_000
 
 
 def screenshot(
-    out: str | os.PathLike[str], *, size: tuple[int, int], theme: str = "dark", gallery: str | None = None
+    out: str | os.PathLike[str],
+    *,
+    size: tuple[int, int],
+    theme: str = "dark",
+    gallery: str | None = None,
+    columns: Sequence[str] | None = None,
 ) -> int:
     """Draw the window with finished columns and save it.
 
@@ -33,7 +39,10 @@ def screenshot(
         ``light`` or ``dark``.
     gallery
         Texture of the gallery; None takes the first one.
+    columns
+        Ids of the methods of the columns; None takes the first four.
     """
+    from texlab_core.engine.registry import methods
     from texlab_core.errors import InputError
     from texlab_core.files.whole import write_whole
 
@@ -46,7 +55,8 @@ def screenshot(
     window.resize(*size)
     window.show()
     explorer = complete(window, settings, themes)
-    explorer.start(f"gallery:{gallery}" if gallery else None)
+    chosen = None if columns is None else [(name, methods()[name].params()) for name in columns]
+    explorer.start(f"gallery:{gallery}" if gallery else None, columns=chosen)
     finished = wait_until_idle(explorer)
     app.processEvents()
     picture = QBuffer()

@@ -6,36 +6,24 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import io
 import os
-import pkgutil
 import sys
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING
 
-import texlab.cli.commands
+from texlab.cli.catalogue import command_names, find_commands
+from texlab.cli.defaults import with_defaults
+from texlab.cli.facts import DEFAULTS, EXIT_CODES
 from texlab.cli.parser import Parser
-from texlab.cli.terminal import INTERRUPTED, append_to_log, complain, orderly_interrupts
+from texlab.cli.piping import standard_streams
+from texlab.cli.terminal import INTERRUPTED, append_to_log, complain, orderly_interrupts, quietly
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
 DESCRIPTION = "Explore example-based texture synthesis; without a command, the window opens."
-
-
-class Command(Protocol):
-    """What a module of ``texlab.cli.commands`` offers."""
-
-    HELP: str
-    ORDER: int
-
-    def configure(self, parser: Parser, /) -> None:
-        """Add the arguments."""
-
-    def execute(self, args: argparse.Namespace, /) -> int:
-        """Do it; return the exit code."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -80,15 +68,19 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(given: Sequence[str]) -> int:
     given = _or_window(given)
     try:
-        args = build_parser(given).parse_args(given)
+        parser = build_parser(given)
+        given = with_defaults(parser, given)
+        args = parser.parse_args(given)
     except SystemExit as end:  # argparse has printed help, version or an error
         return end.code if isinstance(end.code, int) else 0
-    return int(args.execute(args))
+    keep = getattr(args, "json", False)
+    with quietly(getattr(args, "quiet", False), keep_output=keep), standard_streams(args, args.command):
+        return int(args.command.execute(args))
 
 
 def _or_window(given: Sequence[str]) -> list[str]:
     """Return the arguments of a command: nothing, a file or a texture alone are for the window."""
-    alone = len(given) == 1 and given[0] not in find_commands()
+    alone = len(given) == 1 and given[0] not in command_names()
     opens = not given or (alone and (given[0].startswith("gallery:") or os.path.isfile(given[0])))
     return ["gui", *given] if opens else list(given)
 
@@ -99,11 +91,18 @@ def main_gui() -> int:
 
 
 def build_parser(given: Sequence[str] = ()) -> Parser:
-    """Return the parser with every command of ``texlab.cli.commands``."""
-    parser = Parser(prog="texlab", description=DESCRIPTION, allow_abbrev=False)
+    """Return the parser of the command that is named first, or of all of them where none is.
+
+    Parameters
+    ----------
+    given
+        The command line.
+    """
+    parser = Parser(prog="texlab", description=DESCRIPTION, allow_abbrev=False, epilog=_codes())
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("--version", action="version", version=f"texlab {__version__}")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for name, command in find_commands().items():
+    for name, command in find_commands(_wanted(given)).items():
         each = subparsers.add_parser(
             name,
             help=command.HELP,
@@ -112,20 +111,27 @@ def build_parser(given: Sequence[str] = ()) -> Parser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         each.given = given
-        each.set_defaults(execute=command.execute)
+        each.set_defaults(command=command, whole_parser=build_parser)
         command.configure(each)
+        if any("--out" in action.option_strings for action in each._actions):
+            each.add_argument(
+                "--quiet", action="store_true", help="no progress, and no output but errors and --json"
+            )
+        parser.commands[name] = each
     return parser
 
 
-def find_commands() -> dict[str, Command]:
-    """Return the commands by name, in their order."""
-    package = texlab.cli.commands
-    names = [each.name for each in pkgutil.iter_modules(package.__path__) if not each.name.startswith("_")]
-    modules = {
-        name.replace("_", "-"): cast("Command", importlib.import_module(f"{package.__name__}.{name}"))
-        for name in names
-    }
-    return dict(sorted(modules.items(), key=lambda item: (item[1].ORDER, item[0])))
+def _wanted(given: Sequence[str]) -> Collection[str]:
+    """Return the commands whose parsers are needed: one, none for the version, else all."""
+    names = command_names()
+    if given and given[0] in names:
+        return (given[0],)
+    return () if given[:1] == ["--version"] else names
+
+
+def _codes() -> str:
+    lines = "\n".join(f"  {code:<4} {meaning}" for code, meaning in EXIT_CODES.items())
+    return f"exit codes:\n{lines}\n\nDefaults of options are read from {DEFAULTS}; see texlab manpage."
 
 
 def _refuse(sentence: str) -> int:

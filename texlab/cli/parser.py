@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from texlab.cli.terminal import complain
 
@@ -20,10 +20,16 @@ class Parser(argparse.ArgumentParser):
         The whole command line.
     more_help
         Makes text to put below the help from ``given``.
+    commands
+        The parsers of its commands, by name.
     """
 
     given: Sequence[str] = ()
     more_help: Callable[[Sequence[str]], str] | None = None
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.commands: dict[str, Parser] = {}
 
     def error(self, message: str) -> NoReturn:
         """Print one sentence and leave with 2."""

@@ -73,6 +73,35 @@ def logged_quietly() -> Iterator[None]:
 
 
 @dataclass
+class _Manners:
+    """Whether progress is shown."""
+
+    quiet: bool = False
+
+
+_manners = _Manners()
+
+
+@contextlib.contextmanager
+def quietly(quiet: bool, *, keep_output: bool = False) -> Iterator[None]:
+    """Within the block, show no progress, and print nothing on standard output unless it is to be kept."""
+    _manners.quiet = quiet
+    try:
+        if not quiet or keep_output:
+            yield
+            return
+        with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere):
+            yield
+    finally:
+        _manners.quiet = False
+
+
+def shows_progress() -> bool:
+    """Return whether somebody watches: standard error is a terminal, and nobody asked for quiet."""
+    return not _manners.quiet and sys.stderr is not None and sys.stderr.isatty()
+
+
+@dataclass
 class _Interruption:
     """Whether Ctrl-C was pressed, and whether the work has learnt of it."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 from typing import TYPE_CHECKING
+
+from texlab.cli.terminal import complain, shows_progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -22,7 +23,7 @@ def progress(title: str) -> Iterator[Callable[[Step], None] | None]:
     callable or None
         What ``run`` calls with every step; None when standard error is no terminal.
     """
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not shows_progress():
         yield None
         return
     from texlab_core.progress import progress_bar
@@ -40,7 +41,7 @@ def share_bar(title: str) -> Iterator[Callable[[float], None] | None]:
     callable or None
         What takes the share that is done, 0 to 1; None when standard error is no terminal.
     """
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not shows_progress():
         yield None
         return
     from rich.console import Console
@@ -62,13 +63,12 @@ def batch_bar(title: str) -> Iterator[Callable[[BatchProgress], None]]:
     callable
         What ``run_batch`` calls; without a terminal it only says what fails.
     """
-    from texlab.cli.terminal import complain
 
     def tell(progress: BatchProgress) -> None:
         if progress.error:
             complain(progress.error)
 
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not shows_progress():
         yield tell
         return
     from rich.console import Console

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 HELP = "Run several methods on one exemplar and save them side by side."
 ORDER = 16
+READS = ("image",)
+WRITES = ".png"
 NOTES = """
 without --methods:               heeger-bergen,de-bonet,msg,efros-leung
 --same-phase without --methods:  uncoded,msg,car,ac-h, with one random phase for all (the MSG paper's Fig. 8)

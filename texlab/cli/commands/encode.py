@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 HELP = "Save a texture as a code of 69 numbers (MSG)."
 ORDER = 17
+READS = ("image",)
+WRITES = ".msg.json"
 
 
 def configure(parser: Parser) -> None:

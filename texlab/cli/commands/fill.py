@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 HELP = "Fill the holes of an image, or grow it outward, with the texture around."
 ORDER = 12
+READS = ("image", "mask")
+WRITES = ".png"
 METHOD = "efros-leung"
 
 

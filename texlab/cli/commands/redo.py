@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 HELP = "Make a saved result again, from the recipe inside it."
 ORDER = 15
+READS = ("result", "exemplar")
+WRITES = ".png"
 
 
 def configure(parser: Parser) -> None:

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 HELP = "Save a picture of the window, drawn off screen after its columns have finished."
 ORDER = 60
+WRITES = ".png"
 LARGEST_SIDE = 8192
+MOST_COLUMNS = 12
 
 
 def configure(parser: Parser) -> None:
@@ -25,6 +27,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--size", default="1280x800", metavar="WxH", help="size of the window (default 1280x800)")
     parser.add_argument("--theme", choices=("dark", "light"), default="dark", help="default dark")
     parser.add_argument("--gallery", metavar="NAME", help="texture of the gallery to show")
+    parser.add_argument("--columns", metavar="A,B,C", help="the methods of the columns (default: the first four)")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -39,6 +42,7 @@ def execute(args: argparse.Namespace) -> int:
         from texlab_core.images.gallery import find_entry
 
         args.gallery = find_entry(args.gallery).name
+    columns = None if args.columns is None else _methods(args.columns)
     # An empty value is no choice of a platform either.
     os.environ["QT_QPA_PLATFORM"] = os.environ.get("QT_QPA_PLATFORM") or "offscreen"
     # This platform warns of window hints that it has no use for.
@@ -46,4 +50,14 @@ def execute(args: argparse.Namespace) -> int:
     require_qt()
     from texlab.app.screenshot import screenshot
 
-    return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery)
+    return screenshot(out, size=(width, height), theme=args.theme, gallery=args.gallery, columns=columns)
+
+
+def _methods(text: str) -> list[str]:
+    """Return the ids of the methods; raises ``ParamError`` when there are none or too many, or one is unknown."""
+    from texlab_core.engine.registry import find_method
+
+    names = [name.strip() for name in text.split(",")]
+    if len(names) > MOST_COLUMNS:
+        raise ParamError("columns", f"at most {MOST_COLUMNS} methods", len(names))
+    return [find_method(name).id for name in names]

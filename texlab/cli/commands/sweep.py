@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 HELP = "Vary one or two parameters and save a contact sheet."
 ORDER = 15
+READS = ("image",)
+WRITES = ".png"
 EXAMPLES = """
 a range of six values, evenly:        --vary alpha=0.05:0.3:6
 a range of five in even ratios:       --vary alpha=0.01:1:5:log

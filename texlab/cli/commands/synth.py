@@ -27,6 +27,7 @@ from texlab.cli.commands._sources import (
     parse_inputs,
     parse_reading,
 )
+from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     import argparse
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 
 HELP = "Make more of a texture and save it with its recipe."
 ORDER = 10
+READS = ("image",)
+WRITES = ".png"
 
 
 def configure(parser: Parser) -> None:
@@ -94,12 +97,15 @@ def _base(args: argparse.Namespace) -> Params | None:
 
 def _knobs_of_the_method(given: Sequence[str]) -> str:
     """Return the parameters of the method that the command line names, for its help."""
-    from texlab.cli.commands._knobs import knobs
-    from texlab_core.engine.registry import methods
-
     named = [after for before, after in itertools.pairwise(given) if before == "--method"]
     named += [each.removeprefix("--method=") for each in given if each.startswith("--method=")]
-    known = methods()
-    if named and named[-1] in known:
-        return knobs(known[named[-1]]) + "\n"
-    return f"methods: {', '.join(known)}; add --method ID to see the parameters of one.\n"
+    if not named:
+        # To list the methods would mean to import all of them.
+        return "texlab methods lists the methods; add --method ID to see the parameters of one.\n"
+    from texlab.cli.commands._knobs import knobs
+    from texlab_core.engine.registry import find_method
+
+    try:
+        return knobs(find_method(named[-1])) + "\n"
+    except ParamError as error:
+        return f"{error}\n"
