@@ -264,7 +264,7 @@ def test_gallery_lists_every_texture_under_its_class(texlab: Texlab) -> None:
     shown = texlab("gallery")
     assert shown.code == 0
     listed = json.loads(texlab("gallery", "--json").out)
-    assert len(listed) == 51
+    assert len(listed) == 58
     assert all(f"  {each['uri']} " in shown.out for each in listed)
     assert shown.out.count("\n\n") == len({each["class"] for each in listed}) - 1
 

@@ -28,7 +28,7 @@ def rows():
 
 def test_every_row_is_an_entry_with_its_licence_and_every_file_has_a_row():
     entries = {entry.file: entry for entry in gallery()}
-    assert len(entries) == 51
+    assert len(entries) == 58
     for row in rows():
         entry = entries.pop(row["file"])
         assert (entry.cls, entry.author, entry.licence) == (row["class"], row["author"], row["licence"])
@@ -65,9 +65,9 @@ def test_entries_are_found_with_and_without_the_prefix():
         ("pebbles", "did you mean structured-pebbles?"),
         ("structured-peples", "did you mean structured-pebbles"),
         ("Structured-Pebbles", "did you mean structured-pebbles"),
-        ("", "it has 51, for example stochastic-bark."),
-        ("qqq", "it has 51, for example stochastic-bark."),
-        ("../SOURCES.tsv", "it has 51, for example stochastic-bark."),
+        ("", "it has 58, for example stochastic-bark."),
+        ("qqq", "it has 58, for example stochastic-bark."),
+        ("../SOURCES.tsv", "it has 58, for example stochastic-bark."),
     ],
 )
 def test_unknown_names_get_a_suggestion(name, hint):
@@ -87,7 +87,7 @@ def test_every_texture_reads_as_the_file_has_it():
 
 def test_listing_decodes_no_image():
     code = (
-        "import sys; from texlab_core.images.gallery import gallery; assert len(gallery()) == 51; "
+        "import sys; from texlab_core.images.gallery import gallery; assert len(gallery()) == 58; "
         "assert not {'PIL', 'numpy', 'cv2'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=CODE.parent)

@@ -181,7 +181,7 @@ def test_scale_keeps_the_crop_over_the_same_part(qtbot: Any, explorer: Explorer)
 
 def test_gallery_click_and_search(qtbot: Any, explorer: Explorer) -> None:
     gallery = explorer.window.gallery
-    qtbot.waitUntil(lambda: gallery.thumbnails == 51, timeout=30_000)
+    qtbot.waitUntil(lambda: gallery.thumbnails == 58, timeout=30_000)
     qtbot.keyClicks(gallery.search, "zebra")
     visible = [item for item in gallery._items.values() if not item.isHidden()]
     assert [item.text(0) for item in visible] == ["Zebra"]

@@ -69,7 +69,7 @@ def test_it_works_from_another_folder(wheel: Path, tmp_path: Path, zipped: bool)
             archive.extractall(place)
     listed = run_from(place, tmp_path, "gallery", "--json")
     assert listed.returncode == 0, listed.stderr
-    assert len(json.loads(listed.stdout)) == 51
+    assert len(json.loads(listed.stdout)) == 58
     made = run_from(
         place,
         tmp_path,

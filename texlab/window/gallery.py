@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 THUMBNAIL = 48
 _NAME = Qt.ItemDataRole.UserRole
+_WORDS = Qt.ItemDataRole.UserRole + 1
 
 
 class GalleryView(QWidget):
@@ -53,12 +54,12 @@ class GalleryView(QWidget):
         self.tree.itemClicked.connect(self._picked)
         self.tree.itemActivated.connect(self._picked)
 
-    def show_entries(self, entries: Iterable[tuple[str, str, str, str]]) -> None:
-        """List (name, class, title, tooltip) in the order given."""
+    def show_entries(self, entries: Iterable[tuple[str, str, str, str, str]]) -> None:
+        """List (name, class, title, tooltip, further words to find it by) in the order given."""
         self.tree.clear()
         self._items.clear()
         groups: dict[str, QTreeWidgetItem] = {}
-        for name, group, title, tip in entries:
+        for name, group, title, tip, words in entries:
             if group not in groups:
                 head = QTreeWidgetItem([group.capitalize()])
                 font = head.font(0)
@@ -70,6 +71,7 @@ class GalleryView(QWidget):
                 groups[group] = head
             item = QTreeWidgetItem([title])
             item.setData(0, _NAME, name)
+            item.setData(0, _WORDS, words)
             set_tip(item, tip)
             item.setSizeHint(0, QSize(0, THUMBNAIL + 6))
             groups[group].addChild(item)
@@ -115,7 +117,7 @@ class GalleryView(QWidget):
                 item = head.child(child_place)
                 if item is None:
                     continue
-                haystack = f"{head.text(0)} {item.text(0)} {item.data(0, _NAME)}".lower()
+                haystack = f"{head.text(0)} {item.text(0)} {item.data(0, _NAME)} {item.data(0, _WORDS)}".lower()
                 match = all(word in haystack for word in words)
                 item.setHidden(not match)
                 shown += match

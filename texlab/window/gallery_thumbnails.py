@@ -27,7 +27,13 @@ class Thumbnails(QObject):
         self._view = view
         entries = gallery()
         view.show_entries(
-            (entry.uri, entry.cls, entry.title, f"{entry.title}: {entry.author}, {entry.licence}")
+            (
+                entry.uri,
+                entry.cls,
+                entry.title,
+                f"{entry.title}: {entry.author}, {entry.licence}",
+                " ".join(entry.keywords),
+            )
             for entry in entries
         )
         self._worker = Worker("thumbnails", parent=self)

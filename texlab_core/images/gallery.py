@@ -42,6 +42,7 @@ _COMPOUNDS = {
     "oldwood": "old wood",
     "rubblewall": "rubble wall",
     "sandripples": "sand ripples",
+    "seedgradient": "seed gradient",
     "sizegradient": "size gradient",
     "woodgrain": "wood grain",
 }
@@ -63,6 +64,8 @@ class GalleryEntry:
         As ``SOURCES.tsv`` has them.
     done
         What was done to the source to make this texture.
+    keywords
+        Further words by which it is found.
     """
 
     name: str
@@ -73,6 +76,7 @@ class GalleryEntry:
     source: str
     done: str
     file: str
+    keywords: tuple[str, ...] = ()
 
     @property
     def uri(self) -> str:
@@ -108,6 +112,7 @@ def _entry(row: Mapping[str, str]) -> GalleryEntry:
         source=row["source"],
         done=row["what_was_done"],
         file=row["file"],
+        keywords=tuple((row["keywords"] or "").split()),
     )
 
 

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
     if args.json:
         import json
 
-        keys = ("uri", "name", "cls", "title", "author", "licence", "source")
+        keys = ("uri", "name", "cls", "title", "keywords", "author", "licence", "source")
         found = [{"class" if key == "cls" else key: getattr(entry, key) for key in keys} for entry in entries]
         print(json.dumps(found, indent=2))
         return 0
