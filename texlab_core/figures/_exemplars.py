@@ -48,7 +48,8 @@ def smooth_noise(rng: np.random.Generator, wavelength: float, side: int = SIDE) 
     spectrum *= np.exp(-((np.hypot(u, v) * wavelength) ** 2))
     spectrum[0, 0] = 0
     plane: Floats = np.fft.irfft2(spectrum, (side, side))
-    return plane / plane.std()
+    plane /= plane.std()
+    return plane
 
 
 def _mixed(share: Floats, low: tuple[int, int, int], high: tuple[int, int, int]) -> Floats:
