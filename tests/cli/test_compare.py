@@ -128,3 +128,35 @@ def test_the_answer_holds_the_measures_by_id(texlab: Texlab, tmp_path: Path) -> 
     assert found["tiling"]["visual-difference"] < 1e-3 < found["uncoded"]["visual-difference"]
     assert found["uncoded"]["discriminability"] > found["tiling"]["discriminability"]
     assert "copied-share" not in found["uncoded"]
+
+
+def test_parameters_of_one_method_reach_that_method(texlab: Texlab) -> None:
+    words = ("compare", GRASS, "--methods", "tiling,car,msg", *SMALL, "--out")
+    assert texlab(*words, "a.png", "--json").code == 0
+    shown = texlab(*words, "b.png", "--json", "--set", "car.synthesis=recursion", "--set", "msg.bandwidths=paper")
+    assert shown.code == 0
+    before, after = (read_image(Path(name), name).values for name in ("a.png", "b.png"))
+    # A sheet is the exemplar and three results from left to right.
+    assert np.array_equal(before[:, : before.shape[1] // 2], after[:, : before.shape[1] // 2])
+    assert not np.array_equal(before, after)
+
+
+@pytest.mark.parametrize(
+    ("setting", "says"),
+    [
+        ("synthesis=recursion", "set: must be a method, a name and a value"),
+        ("car.synthesis", "set: must be a method, a name and a value"),
+        (".synthesis=recursion", "set: must be a method, a name and a value"),
+        ("msg.bandwidths=paper", "set: must be a parameter of one of the compared methods (car)"),
+        ("car.no_such=1", "parameter name: must be one of"),
+        ("car.synthesis=quick", "synthesis: must be one of spectrum, recursion"),
+    ],
+)
+def test_parameters_of_no_method(texlab: Texlab, setting: str, says: str) -> None:
+    shown = texlab("compare", GRASS, "--methods", "car", *SMALL, "--out", "a.png", "--set", setting)
+    assert shown.code == 2
+    assert says in shown.err
+    twice = texlab(
+        "compare", GRASS, "--methods", "car", *SMALL, "--out", "a.png", *["--set", "car.synthesis=spectrum"] * 2
+    )
+    assert (twice.code, "synthesis is set twice." in twice.err) == (2, True)

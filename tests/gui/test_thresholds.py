@@ -502,6 +502,14 @@ def test_the_form_shows_the_table_small(form, qtbot):
     form.set_params(DeBonetParams(thresholds=ThresholdTable((((1, "red/laplacian"), 0.5),))))
     assert editor.note.text() == "1 cell set by hand."
     assert editor.map.view.changed.sum() == 1
+    # What the exemplar does not have is not counted with the others: a level too many, a gray one's channel.
+    cells = ((1, "red/laplacian"), (24, "red/laplacian"), (1, "luminance/laplacian"))
+    form.set_params(DeBonetParams(thresholds=ThresholdTable(tuple((cell, 0.5) for cell in cells))))
+    assert editor.note.text() == ("1 cell set by hand; 2 for levels or features that this exemplar does not have.")
+    form.set_params(DeBonetParams(thresholds=ThresholdTable(tuple((cell, 0.5) for cell in cells[1:]))))
+    assert editor.note.text() == (
+        "No cells set by hand; 2 for levels or features that this exemplar does not have."
+    )
 
 
 @pytest.fixture

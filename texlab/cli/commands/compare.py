@@ -5,7 +5,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_file, parse_number, parse_size, refuse_overwriting
+from texlab.cli.commands._options import (
+    output_file,
+    parse_number,
+    parse_settings,
+    parse_size,
+    refuse_overwriting,
+)
 from texlab.cli.commands._progress import share_bar
 from texlab.cli.commands._sources import add_scale_options, parse_reading
 from texlab.cli.terminal import interrupted
@@ -16,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.cli.parser import Parser
+    from texlab_core.engine.params import Params
     from texlab_core.sheets.comparison import Compared
 
 HELP = "Run several methods on one exemplar and save them side by side."
@@ -25,6 +32,7 @@ WRITES = ".png"
 NOTES = """
 without --methods:               heeger-bergen,de-bonet,msg,efros-leung
 --same-phase without --methods:  uncoded,msg,car,ac-h, with one random phase for all (the MSG paper's Fig. 8)
+a parameter of one method:       --set car.synthesis=recursion --set msg.bandwidths=paper
 """
 
 
@@ -38,6 +46,9 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="of the first method; the others count on")
     parser.add_argument("--columns", metavar="N", help="pictures in a row (default: one row up to six)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="METHOD.NAME=VALUE", help="set one parameter of one method"
+    )
     add_scale_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -66,8 +77,9 @@ def execute(args: argparse.Namespace) -> int:
         names: Sequence[str] = FIG_8 if args.same_phase else FIRST_SIGHT
     else:
         names = [name.strip() for name in args.methods.split(",")]
+    params = parse_params(args.set, names)
     exemplar = reading.read(args.image)
-    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase)
+    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase, params=params)
     cells = len(jobs) + 1
     check_sheet(cells, columns or series_columns(cells), jobs[0].picture_size)
     with share_bar(f"{len(jobs)} methods") as show:
@@ -75,6 +87,36 @@ def execute(args: argparse.Namespace) -> int:
     write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))
     report(compared, out, as_json=args.json)
     return 0
+
+
+def parse_params(texts: Sequence[str], names: Sequence[str]) -> dict[str, Params]:
+    """Return the parameters of the methods that ``--set METHOD.name=value`` names.
+
+    Parameters
+    ----------
+    texts
+        What was given.
+    names
+        Ids of the methods that are compared.
+
+    Raises
+    ------
+    InputError
+        When one is malformed, set twice, or of a method that is not compared.
+    """
+    from texlab_core.engine.registry import find_method
+    from texlab_core.errors import ParamError
+
+    settings: dict[str, list[str]] = {}
+    for text in texts:
+        left, equals, value = text.partition("=")
+        method, dot, name = left.strip().rpartition(".")
+        if not (method and dot and name and equals):
+            raise ParamError("set", "a method, a name and a value as in car.synthesis=recursion", text)
+        if method not in names:
+            raise ParamError("set", f"a parameter of one of the compared methods ({', '.join(names)})", text)
+        settings.setdefault(method, []).append(f"{name}={value}")
+    return {method: find_method(method).params.parse(parse_settings(each)) for method, each in settings.items()}
 
 
 def report(compared: Sequence[Compared], out: Path, *, as_json: bool) -> None:

@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from texlab.docks.thresholds.map import TableMap
-from texlab.docks.thresholds.table import KnownAxes, law_of, make_view
+from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view
 from texlab.form.knobs import KnobWidget, register_editor
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
@@ -98,14 +98,33 @@ class ThresholdKnob(KnobWidget):
 
     def _show(self) -> None:
         axes = self._known.of(self._column) if self._column is not None else None
-        count = len(self._table.cells)
-        words = "All cells follow the law." if not count else f"{count} cell{'s' * (count > 1)} set by hand."
+        words = words_for(self._table, axes)
         if axes is None or self._column is None:
             self.note.setText(f"{words} Levels and features are known after the first run.")
         else:
             self.map.show_view(make_view(axes, "each", self._table, law_of(self._column.params)))
             self.note.setText(words)
         self.map.setVisible(axes is not None)
+
+
+def words_for(table: ThresholdTable, axes: Axes | None) -> str:
+    """Return how many cells were set by hand: those that the exemplar has, and those that have nothing to do.
+
+    Parameters
+    ----------
+    table
+        The cells.
+    axes
+        Levels and features of the exemplar; None while they are not known, and all cells count.
+    """
+    names = None if axes is None else {feature.name for feature in axes.features}
+    idle = sum(
+        names is not None and (axes is None or k > axes.depth or name not in names) for (k, name), _ in table.cells
+    )
+    count = len(table.cells) - idle
+    words = f"{count or 'No'} cell{'s' * (count != 1)} set by hand" if table.cells else "All cells follow the law"
+    more = f"; {idle} for levels or features that this exemplar does not have" if idle else ""
+    return f"{words}{more}."
 
 
 def register() -> None:
