@@ -290,6 +290,26 @@ def test_recipes_find_the_image_whatever_was_done_with_its_transparency(tmp_path
         assert read_recipe(out).job(path).inputs["exemplar"].sha256 == exemplar.sha256
 
 
+@pytest.mark.parametrize(
+    "values", [NOISE * 40 - 3, np.dstack([np.full((24, 20, 3), 0.3), np.full((24, 20), 254 / 255)])]
+)
+def test_recipes_of_the_first_version_find_what_is_read_otherwise_today(values, tmp_path):
+    path = tmp_path / "a.tif"
+    tifffile.imwrite(path, values.astype(np.float32), photometric="rgb", metadata=None)
+    stored = values.astype(np.float32)
+    if values.shape[2] == 3:
+        low, high = (float(each) for each in (stored.min(), stored.max()))
+        then = np.clip((stored.astype(np.float64) / 2 - low / 2) / (high / 2 - low / 2), 0, 1).astype(np.float32)
+    else:
+        alpha = stored[..., 3:]
+        then = (stored[..., :3] * alpha + (1 - alpha)).clip(0, 1)
+    exemplar = as_exemplar(then)
+    assert as_exemplar(path).sha256 != exemplar.sha256
+    out = tmp_path / "out.png"
+    save_result(made_of(exemplar), out)
+    assert read_recipe(out).job(path).inputs["exemplar"].sha256 == exemplar.sha256
+
+
 # Pictures that are too large to be kept whole.
 
 

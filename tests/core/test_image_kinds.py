@@ -12,6 +12,8 @@ from PIL import Image
 
 from texlab_core.errors import ImageError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.decoded import Gate
+from texlab_core.images.formats.kinds import decode_open
 from texlab_core.images.formats.profiles import encode_srgb
 from texlab_core.images.formats.reading import read_image
 
@@ -82,6 +84,15 @@ EXACT = {
 def test_formats_without_loss(kind):
     data, values, peak, depth = EXACT[kind]
     reads(data, values, peak, depth)
+
+
+@pytest.mark.parametrize("kind", EXACT)
+def test_readers_do_the_same_in_either_process(kind):
+    data = EXACT[kind][0]
+    here = decode_open(io.BytesIO(data), Gate("a", len(data), apart=True))
+    there = read_image(data, "a")
+    assert np.array_equal(here.values, there.values)
+    assert (here.peak, here.notes, here.depth) == (there.peak, there.notes, there.depth)
 
 
 @pytest.mark.parametrize("bits", [10, 16])

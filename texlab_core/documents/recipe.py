@@ -11,10 +11,10 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.run import versions
 from texlab_core.engine.sizes import size_to_json
 from texlab_core.errors import InputError, RecipeError
-from texlab_core.images.exemplar import as_exemplar, take
+from texlab_core.images.exemplar import as_exemplar, as_first_exemplar, take
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
@@ -123,9 +123,15 @@ class RecipeInput:
         scale, crop = self.taken or (1.0, None)
         first = self._read(given, scale, crop, {})
         # A recipe does not say what was done with transparency; another hash tells that it was something else.
-        others: list[dict[str, Any]] = [{"alpha": "keep"}, {"background": 0.0}]
-        for reading in [None, *others]:
-            image = first if reading is None else self._read(given, scale, crop, reading)
+        readings: list[Callable[[], ImageInput]] = [
+            lambda: first,
+            lambda: self._read(given, scale, crop, {"alpha": "keep"}),
+            lambda: self._read(given, scale, crop, {"background": 0.0}),
+        ]
+        if self.taken is None and not isinstance(given, ImageInput):
+            readings.append(lambda: as_first_exemplar(given))
+        for reading in readings:
+            image = reading()
             if image.sha256 == self.sha256:
                 return image
             if self.scale != 1 or self.crop is not None:

@@ -98,6 +98,20 @@ def as_exemplar(
     return _read_reduced(image, decoded, name, crop, float(scale), should_stop)
 
 
+def as_first_exemplar(source: Source) -> ImageInput:
+    """Read an image by the rules of the first version, so that its recipes find it; see :class:`UnitRange`.
+
+    Raises
+    ------
+    ImageError
+        As :func:`as_exemplar`.
+    """
+    decoded, name = _load(source, None, scale=1.0, reduced=False, should_stop=None)
+    image = UnitRange(decoded, name, 1.0, "background", first_rules=True)
+    pixels, _ = _whole(image, decoded.values.shape, None)
+    return take(pixels, name, notes=tuple(image.notes), depth=decoded.depth)
+
+
 def _taken_anew(source: ImageInput, name: str | None, crop: Crop | None, scale: float) -> ImageInput:
     if crop is None and scale == 1.0:
         return source if name is None else dataclasses.replace(source, name=name)

@@ -73,6 +73,9 @@ class UnitRange:
     alpha
         "background": transparent pixels are laid over it. "ignore": colours are used as stored. "keep": so are
         they, and alpha comes beside them. An alpha of at least 254 of 255 everywhere is none.
+    first_rules
+        Those of the first version, which old recipes need: floats beyond 0 to 1 are mapped from the least to the
+        greatest, and only an alpha of 1 everywhere is none.
 
     Raises
     ------
@@ -80,7 +83,10 @@ class UnitRange:
         When values are not finite, or integers exceed their peak.
     """
 
-    def __init__(self, decoded: Decoded, name: str, background: float, alpha: Alpha) -> None:
+    def __init__(
+        self, decoded: Decoded, name: str, background: float, alpha: Alpha, *, first_rules: bool = False
+    ) -> None:
+        self._first_rules = first_rules
         self._values = decoded.values
         self._peak = decoded.peak
         self._premultiplied = decoded.premultiplied
@@ -158,6 +164,8 @@ class UnitRange:
             raise ImageError(f"{name}: the alpha channel has values that are not finite.")
         if low >= 0 and high <= 1:
             return Range(0, 1)
+        if self._first_rules:
+            return Range(low, high)
         flat = colours.reshape(-1)
         # Halves and whole numbers of few bits could not hold the limits.
         sample = flat[:: 1 + flat.size // _MOST_SAMPLED].astype(np.float64)
@@ -187,7 +195,7 @@ class UnitRange:
         if self._values.shape[2] == self._colours:
             return None
         least = float(self._in_range(self._values[..., self._colours :].min(keepdims=True), alpha=True).min())
-        if least >= _OPAQUE:
+        if least >= (1 if self._first_rules else _OPAQUE):
             nearly = "" if least == 1 else " (at least 254 of 255)"
             self.notes.append(f"The alpha channel is opaque everywhere{nearly} and was dropped.")
             return None
