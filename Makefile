@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench wheel screenshot clean distclean
+.PHONY: run test lint fmt bench wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -27,6 +27,30 @@ bench: .venv/.ready-bench
 wheel: .venv/.ready-run
 	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist
 	@ls dist/*.whl
+
+sdist: .venv/.ready-test
+	@$(PY) -m hatchling build --target sdist
+
+# The site in build/docs: the Python package from its docstrings, and the tutorials.
+docs: .venv/.ready-test
+	@$(PY) docs/build.py
+
+# Versions and hashes of everything, for every system and Python that is supported; needs uv.
+lock:
+	@uv pip compile pyproject.toml --extra test --extra cluster --universal --python-version 3.11 \
+		--generate-hashes --no-emit-index-url --no-header --no-annotate --quiet --output-file requirements/lock.txt
+
+# Which methods give other bits here than with the versions of the lock file; BITS=FILE compares with a file.
+bits: .venv/.ready-test
+	@$(PY) .ci/bits.py $(if $(BITS),--against $(BITS))
+
+# The PNG icons, from the SVG.
+icons: .venv/.ready-test
+	@$(PY) .ci/icons.py
+
+# A folder with the whole program, for machines without Python.
+program: .venv/.ready-run
+	@$(PY) .ci/program.py
 
 # The picture in the README.
 screenshot: .venv/.ready-run

@@ -2,6 +2,9 @@
 
     python3 .ci/setup_env.py run|test|bench
 
+With TEXLAB_LOCKED=1 it installs the versions of requirements/lock.txt and checks their hashes; without, the newest
+ones that pyproject.toml allows.
+
 Standard library only, since nothing else is there yet. As root on Debian and its relatives it installs missing
 system packages; otherwise it prints the one command that does, and exits with 2.
 """
@@ -18,6 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
+LOCK = ROOT / "requirements" / "lock.txt"
 EXTRAS = {"run": "", "test": "[test]", "bench": "[test,bench]"}
 INCLUDED = {"run": ("run",), "test": ("run", "test"), "bench": ("run", "test", "bench")}
 
@@ -62,7 +66,14 @@ def main(goal: str) -> int:
     print(f"Installing TexLab and what it needs into {VENV.name} (once) ...", flush=True)
     pip = [str(python), "-m", "pip", "install", "--disable-pip-version-check"]
     quiet = [] if sys.stdout.isatty() else ["--quiet"]
-    done = subprocess.run([*pip, *quiet, "--editable", f".{EXTRAS[goal]}"], cwd=ROOT, check=False)
+    wanted = ["--editable", f".{EXTRAS[goal]}"]
+    if os.environ.get("TEXLAB_LOCKED") == "1":
+        # Exactly what was tested, byte for byte; then TexLab itself, which asks for nothing more.
+        locked = [*pip, *quiet, "--require-hashes", "--requirement", str(LOCK)]
+        if subprocess.run(locked, cwd=ROOT, check=False).returncode:
+            return refuse("pip could not install what requirements/lock.txt says; its message is above.")
+        wanted = ["--no-deps", "--editable", "."]
+    done = subprocess.run([*pip, *quiet, *wanted], cwd=ROOT, check=False)
     if done.returncode:
         return refuse("pip could not install TexLab; its message is above.")
     for each in INCLUDED[goal]:

@@ -87,6 +87,18 @@ def test_a_virtual_x_server_is_welcome_but_not_needed(
     assert (setup_env.VENV / ".ready-run").exists()
 
 
+def test_locked_versions_are_installed_with_their_hashes(
+    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(setup_env, "loads", lambda soname: True)
+    monkeypatch.setattr(setup_env.importlib.util, "find_spec", lambda name: True)
+    monkeypatch.setenv("TEXLAB_LOCKED", "1")
+    assert setup_env.main("test") == 0
+    locked, own = setup_env.commands[-2:]
+    assert locked[-3:] == ["--require-hashes", "--requirement", str(setup_env.LOCK)]
+    assert own[-3:] == ["--no-deps", "--editable", "."]
+
+
 def test_only_a_window_needs_the_libraries_of_x11(setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "libxcb-cursor0" not in setup_env.missing_packages("run")
     monkeypatch.setenv("DISPLAY", ":0")

@@ -9,6 +9,7 @@ import sys
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QTimer
+from PySide6.QtGui import QIcon, QPixmap
 from PySide6.QtWidgets import QApplication
 
 from texlab.storage.settings import Settings
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
 
 SWITCH_INTERVAL_S = 0.001
+ICON_SIZES = (32, 64, 256)
 
 
 def application() -> QApplication:
@@ -32,9 +34,22 @@ def application() -> QApplication:
     made.setApplicationName("texlab")
     made.setApplicationDisplayName("")
     made.setDesktopFileName("texlab")
+    made.setWindowIcon(icon())
     # Work in other threads gives the window its turn sooner.
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     return made
+
+
+def icon() -> QIcon:
+    """Return the program's icon; read as bytes, since the resources may lie inside an archive."""
+    from texlab_core.files.resources import resource
+
+    found = QIcon()
+    for size in ICON_SIZES:
+        picture = QPixmap()
+        picture.loadFromData(resource(f"icons/texlab-{size}.png").read_bytes())
+        found.addPixmap(picture)
+    return found
 
 
 def build(settings: Settings, themes: ThemeSource) -> MainWindow:

@@ -10,6 +10,7 @@ from functools import cache as memoize
 from typing import TYPE_CHECKING, Any, Literal
 
 from texlab_core.engine.params import frozen_mapping
+from texlab_core.engine.plugins import OWN_PACKAGE
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.result import Result
 from texlab_core.engine.streams import Streams
@@ -22,7 +23,11 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.job import Job
+    from texlab_core.engine.registry import Method
     from texlab_core.engine.steps import Output, Step
+
+# What computes the bits: transforms and sums, compiled kernels and their compiler, scaling and filters.
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "opencv-contrib-python-headless")
 
 
 def run(
@@ -81,7 +86,7 @@ def run(
         notes=output.notes,
         details=output.details,
         elapsed_s=time.perf_counter() - start,
-        versions=versions(),
+        versions=versions_for(method),
     )
 
 
@@ -107,11 +112,22 @@ def _drive(
 
 @memoize
 def versions() -> Mapping[str, str]:
-    """Return the versions that influence the bits of a result."""
+    """Return the versions that influence the bits of every method: the program's, Python's, and of libraries."""
     found = {"python": platform.python_version(), "texlab": __version__}
-    for name in ("numpy", "scipy", "numba", "opencv-contrib-python-headless"):
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            found[name] = "unknown"
+    for name in LIBRARIES:
+        found[name] = _version(name)
     return frozen_mapping(found)
+
+
+def versions_for(method: Method) -> Mapping[str, str]:
+    """Return the versions that influence a method's bits: those of :func:`versions`, and of its own package."""
+    if method.package == OWN_PACKAGE:
+        return versions()
+    return frozen_mapping({**versions(), method.package: _version(method.package)})
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return "unknown"
