@@ -23,7 +23,7 @@ from texlab_core.transforms.colour import interleave
 from texlab_core.work.tasks import Pace, crew, finish, row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -214,10 +214,11 @@ def synthesize(
     params: HeegerBergenParams,
     size: tuple[int, int],
     streams: Streams,
+    begin: Callable[[int, NDArray[np.float32]], Task[None]] | None = None,
 ) -> Generator[Step, None, Output]:
-    """Make a texture from noise."""
+    """Make a texture from noise; ``begin(axis, noise)`` may turn an axis's noise into another start, in place."""
     with crew() as team:
-        run = _Run(model, inputs, params, size, streams, team)
+        run = _Run(model, inputs, params, size, streams, team, begin)
         yield from run.start()
         for iteration in range(params.iterations):
             yield from run.iterate(iteration)
@@ -236,7 +237,9 @@ class _Run:
         size: tuple[int, int],
         streams: Streams,
         team: Crew,
+        begin: Callable[[int, NDArray[np.float32]], Task[None]] | None = None,
     ) -> None:
+        self.begin = begin
         self.model, self.inputs, self.params, self.size = model, inputs, params, size
         self.streams, self.team = streams, team
         levels = min(model.levels, analysis.max_levels(size, params.pyramid))
@@ -261,6 +264,8 @@ class _Run:
             for rows in row_blocks(self.size):
                 plane[rows] = noise.random(plane[rows].shape, dtype=np.float32)
                 yield self._step("noise")
+            if self.begin is not None:
+                yield from self._steps(self.begin(axis, plane), "noise")
             work = match(plane, target.pixels, self.plan.matching, self.streams.key("start", axis))
             yield from self._steps(work, "noise")
             self.planes.append(plane)

@@ -1,0 +1,1 @@
+"""Mixtures of textures after Heeger and Bergen: between two or more exemplars."""
