@@ -119,3 +119,36 @@ def test_methods_lists_what_a_method_takes(texlab: Texlab) -> None:
     assert "width x height from" in shown
     assert "width x height x depth" in texlab("methods", "solid").out
     assert json.loads(texlab("methods", "solid", "--json").out)["dimensions"] == 3
+
+
+def test_a_strip_from_one_texture_to_another(texlab: Texlab) -> None:
+    sweep = (
+        "sweep",
+        "gallery:stochastic-granite",
+        "--method",
+        "mixture",
+        "--crop",
+        "32x32+0+0",
+        "--size",
+        "24x24",
+    )
+    second = ("--input", "second=gallery:stochastic-bark", "--input-scale", "second=0.25")
+    made = texlab(*sweep, "--vary", "weight=0:1:5", *second, "--out", "strip.png", "--json")
+    assert (made.code, made.err) == (0, "")
+    first = json.loads(made.out)
+    assert [cell["error"] for cell in first["cells"]] == [None] * 5
+    # The sheet knows both textures.
+    assert texlab("sweep", "--recipe", "strip.png", "--out", "again.png").code == 0
+    one, other = (np.asarray(Image.open(name).convert("RGB")) for name in ("strip.png", "again.png"))
+    np.testing.assert_array_equal(one, other)
+    other_second = ("--input", "second=gallery:stochastic-lava", "--input-crop", "second=32x32+0+0")
+    assert texlab("sweep", "--recipe", "strip.png", *other_second, "--out", "third.png").code == 0
+    assert (np.asarray(Image.open("third.png").convert("RGB")) != one).any()
+    assert texlab("sweep", "--recipe", "mixture-strip", "--size", "16x16", "--out", "made.png").code == 0
+    for arguments, words in (
+        ((*sweep, "--vary", "weight=0,1", "--out", "x.png"), "needs the input second"),
+        ((*sweep, "--vary", "weight=0,1", *second, "--out", "x.png", "--input", "thrid=a.png"), "must be one of"),
+    ):
+        shown = texlab(*arguments)
+        assert (shown.code, shown.err.count("\n")) == (2, 1)
+        assert words in shown.err

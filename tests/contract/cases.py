@@ -36,10 +36,12 @@ def texture(height: int, width: int, channels: int = 3) -> ImageInput:
 def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> Job:
     """Return a job of the method on a small colour texture."""
     inputs: dict[str, Any] = {}
+    knobs = {field.name for field in describe(method.params)}
     for spec in method.inputs:
         if spec.kind == "image" and spec.name == "exemplar":
             inputs[spec.name] = exemplar or texture(24, 32)
-        elif spec.required:
+        # A knob with the name of an input says something of that input.
+        elif spec.required or spec.name in knobs:
             if spec.kind != "image":
                 raise AssertionError(
                     f"Give tests/contract/cases.py an example of the input {spec.name} of {method.id}."

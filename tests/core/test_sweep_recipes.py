@@ -118,6 +118,8 @@ def test_a_sweep_describes_itself_completely():
         ),
         (document(vary=[{"name": "level", "from": 0, "to": 1, "count": 2, "log": True}]), "a range above 0"),
         (document(vary=[{"name": "border", "from": 0, "to": 1, "count": 2}]), "a list of values for border"),
+        (document(inputs={"second": {"name": "gallery:stochastic-rock"}}), "inputs: has no place here"),
+        (document(inputs=[1]), "inputs: has no place here"),
         (document(size=[1, 2]), "size: must be a width and a height"),
         (document(size={"width": 0, "height": 9}), "size: must be height and width"),
         (document(seed=-1), "seed: must be a whole number"),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.engine.job import Job
+from texlab_core.engine.params import describe
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
@@ -42,10 +43,12 @@ def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> J
     """Return a job of the method on a small colour texture; another one stands for every other image it needs."""
     exemplar = texture(24, 32) if exemplar is None else exemplar
     inputs: dict[str, Input] = {}
+    knobs = {field.name for field in describe(method.params)}
     for spec in method.inputs:
         if spec.name == "exemplar":
             inputs[spec.name] = exemplar
-        elif spec.required:
+        # A knob with the name of an input says something of that input.
+        elif spec.required or spec.name in knobs:
             promise(
                 spec.kind == "image",
                 f"the input {spec.name} is required, and these checks can make images only; give it a default.",

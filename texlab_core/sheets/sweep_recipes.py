@@ -23,7 +23,9 @@ from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
+    from texlab_core.engine.registry import Method
 
 FORMAT = "texlab-sweep"
 VERSION = 1
@@ -39,6 +41,7 @@ _KEYS = (
     "size",
     "seed",
     "exemplar",
+    "inputs",
     "versions",
 )
 _Data = dict[str, Any]
@@ -70,6 +73,10 @@ class ExemplarChoice:
         if origin is None:
             return cls(exemplar.name, sha256=exemplar.sha256)
         return cls(exemplar.name, origin.scale, origin.crop, exemplar.sha256)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as JSON data, without what it does not say."""
+        return {key: value for key, value in dataclasses.asdict(self).items() if value not in (None, "")}
 
     def load(self) -> ImageInput:
         """Return the exemplar; raises ``InputError`` when it cannot be read, or has another hash."""
@@ -103,6 +110,8 @@ class SweepRecipe:
         Of every cell, unless it is varied.
     exemplar
         What it was made for; None leaves the choice to the user.
+    inputs
+        The further images of the method by their names.
     """
 
     name: str
@@ -113,14 +122,15 @@ class SweepRecipe:
     size: tuple[int, ...] | None = None
     seed: int = 0
     exemplar: ExemplarChoice | None = None
+    inputs: Mapping[str, ExemplarChoice] = field(default_factory=dict)
 
     @property
     def params(self) -> Params:
         """The parameters that all cells share, but for the varied ones."""
         return find_method(self.method).params.from_json(self.parameters)
 
-    def sweep(self, exemplar: ImageInput | None = None) -> Sweep:
-        """Return the sweep over an exemplar (its own when None).
+    def sweep(self, exemplar: ImageInput | None = None, given: Mapping[str, Input] | None = None) -> Sweep:
+        """Return the sweep over an exemplar (its own when None); inputs that are given stand in for its own.
 
         Raises
         ------
@@ -132,7 +142,9 @@ class SweepRecipe:
                 raise RecipeError(f"The sweep {self.name} does not say for which exemplar; name one.")
             exemplar = self.exemplar.load()
         size: Any = self.size
-        inputs = {"exemplar": exemplar}
+        own = {name: choice for name, choice in self.inputs.items() if name not in (given or {})}
+        inputs: dict[str, Input] = {name: choice.load() for name, choice in own.items()}
+        inputs |= {**(given or {}), "exemplar": exemplar}
         return Sweep(
             Job(method=self.method, inputs=inputs, params=self.params, size=size, seed=self.seed), self.axes
         )
@@ -150,6 +162,13 @@ class SweepRecipe:
             size=base.size,
             seed=base.seed,
             exemplar=ExemplarChoice.of(exemplar_of(base.inputs)),
+            inputs=frozen_mapping(
+                {
+                    role: ExemplarChoice.of(each)
+                    for role, each in base.inputs.items()
+                    if role != "exemplar" and isinstance(each, ImageInput)
+                }
+            ),
         )
 
     def to_json(self) -> _Data:
@@ -163,10 +182,9 @@ class SweepRecipe:
             data["size"] = size_to_json(self.size)
         data["seed"] = self.seed
         if self.exemplar is not None:
-            chosen = {
-                key: value for key, value in dataclasses.asdict(self.exemplar).items() if value not in (None, "")
-            }
-            data["exemplar"] = chosen
+            data["exemplar"] = self.exemplar.to_json()
+        if self.inputs:
+            data["inputs"] = {role: choice.to_json() for role, choice in self.inputs.items()}
         return data
 
 
@@ -209,6 +227,7 @@ def _from_json(given: object) -> SweepRecipe:
         size=None if data.get("size") is None else size_from_json(data["size"], method.dimensions),
         seed=check_seed(data.get("seed", 0)),
         exemplar=_exemplar(data.get("exemplar")),
+        inputs=_inputs(data.get("inputs", {}), method),
     )
 
 
@@ -243,26 +262,36 @@ def _axis(data: object, params: type[Params]) -> Vary:
     return Vary(name, spread(knob, knob.check(data["from"]), knob.check(data["to"]), data["count"], log=log))
 
 
+def _inputs(data: object, method: Method) -> Mapping[str, ExemplarChoice]:
+    images = {spec.name for spec in method.inputs if spec.kind == "image"} - {"exemplar"}
+    if not isinstance(data, dict) or not set(data) <= images:
+        named = f"may name {', '.join(sorted(images))}" if images else "has no place here"
+        raise RecipeError(f"inputs: {named} for {method.title}, got {strict_json.shorten(data)}.")
+    return frozen_mapping({role: _choice(each, role) for role, each in data.items()})
+
+
 def _exemplar(data: object) -> ExemplarChoice | None:
-    if data is None:
-        return None
+    return None if data is None else _choice(data, "exemplar")
+
+
+def _choice(data: object, role: str) -> ExemplarChoice:
     if not isinstance(data, dict) or not {"name"} <= set(data) <= {"name", "scale", "crop", "sha256"}:
-        raise RecipeError(f"exemplar: must hold a name, got {strict_json.shorten(data)}.")
+        raise RecipeError(f"{role}: must hold a name, got {strict_json.shorten(data)}.")
     scale = data.get("scale", 1.0)
     if isinstance(scale, bool) or not isinstance(scale, int | float) or not 0 < scale <= 1:
         raise RecipeError(
-            f"exemplar: scale must be a number above 0 and at most 1, got {strict_json.shorten(scale)}."
+            f"{role}: scale must be a number above 0 and at most 1, got {strict_json.shorten(scale)}."
         )
     sha256 = _text(data, "sha256", 64, "")
-    return ExemplarChoice(_text(data, "name", 4096), float(scale), _crop(data.get("crop")), sha256)
+    return ExemplarChoice(_text(data, "name", 4096), float(scale), _crop(data.get("crop"), role), sha256)
 
 
-def _crop(data: object) -> Crop | None:
+def _crop(data: object, role: str) -> Crop | None:
     if data is None:
         return None
     keys = [each.name for each in dataclasses.fields(Crop)]
     if not isinstance(data, dict) or set(data) != set(keys) or any(type(data[key]) is not int for key in keys):
-        raise RecipeError(f"exemplar: crop must hold {', '.join(keys)}, got {strict_json.shorten(data)}.")
+        raise RecipeError(f"{role}: crop must hold {', '.join(keys)}, got {strict_json.shorten(data)}.")
     return Crop(**data)
 
 

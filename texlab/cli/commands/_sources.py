@@ -179,14 +179,19 @@ def load_inputs(
         raise InputError(f"{source} is a code of numbers, and {method.title} needs an image; say --method msg.")
     if first == "code" and (reading.scale != 1.0 or reading.crop is not None):
         raise InputError(f"{source} is a code of numbers, which can be neither scaled nor cropped.")
-    given = {first: Source(source, reading)}
-    for name, other in (others or {}).items():
+    if first in (others or {}):
+        raise InputError(f"The input {first} is given twice.")
+    return {first: load_input(Source(source, reading), specs[first]), **load_others(others or {}, method)}
+
+
+def load_others(others: Mapping[str, Source], method: Method) -> dict[str, Input]:
+    """Return the further inputs of a method, each read as its kind wants it; raises ``InputError``."""
+    specs = {spec.name: spec for spec in method.inputs}
+    for name in others:
         if name not in specs:
             raise ParamError("input", f"one of {', '.join(specs)} for {method.title}", name)
-        if name in given:
-            raise InputError(f"The input {name} is given twice.")
-        given[name] = Source(other.place, replace(other.reading, background=specs[name].background))
-    return {name: load_input(each, specs[name]) for name, each in given.items()}
+    readings = {name: replace(each.reading, background=specs[name].background) for name, each in others.items()}
+    return {name: load_input(Source(each.place, readings[name]), specs[name]) for name, each in others.items()}
 
 
 def load_input(source: Source, spec: InputSpec) -> Input:

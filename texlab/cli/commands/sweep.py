@@ -8,12 +8,18 @@ from typing import TYPE_CHECKING, Any
 from texlab.cli.commands._options import (
     output_file,
     parse_number,
+    parse_result_size,
     parse_settings,
-    parse_size,
     refuse_overwriting,
 )
 from texlab.cli.commands._progress import share_bar
-from texlab.cli.commands._sources import add_scale_options, parse_reading
+from texlab.cli.commands._sources import (
+    add_input_options,
+    add_scale_options,
+    load_others,
+    parse_inputs,
+    parse_reading,
+)
 from texlab.cli.terminal import interrupted, logged_quietly
 
 if TYPE_CHECKING:
@@ -34,6 +40,7 @@ a range of five in even ratios:       --vary alpha=0.01:1:5:log
 a list:                               --vary border=reflect,periodic
 variations:                           --vary seed=1:12:12
 two parameters, across and down:      --vary alpha=0.1,0.2 --vary beta=0,1
+from one texture to another:          --method mixture --vary weight=0:1:5 --input second=wall.jpg
 a ready-made sweep, or an old sheet:  --recipe de-bonet-fig-11, --recipe SHEET.png
 """
 
@@ -49,16 +56,18 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--out", required=True, metavar="SHEET.png", help="file to write; carries the recipe")
     parser.add_argument("--recipe", metavar="NAME|FILE", help="start from a ready-made sweep, a file or a sheet")
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from the parameters of a preset")
-    parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
+    parser.add_argument("--size", metavar="WxH|WxHxD", help="of each result (default: the exemplar's)")
     parser.add_argument("--seed", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
     add_scale_options(parser)
+    add_input_options(parser)
     parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Check everything, run the cells, save the sheet, report."""
+    from texlab_core.engine.registry import find_method
     from texlab_core.errors import ParamError
     from texlab_core.sheets.contact_sheet import check_sheet
     from texlab_core.sheets.sweep_running import run_sweep
@@ -70,10 +79,13 @@ def execute(args: argparse.Namespace) -> int:
     largest = parse_number("cell", args.cell, int)
     if not 64 <= largest <= 512:
         raise ParamError("cell", "a whole number from 64 to 512", largest)
+    others = parse_inputs(args)
     recipe, exemplar = plan(args)
-    source = args.image or (recipe.exemplar.name if recipe.exemplar else "")
-    refuse_overwriting(out, source)
-    sweep = recipe.sweep(exemplar)
+    sources = [args.image or (recipe.exemplar.name if recipe.exemplar else "")]
+    sources += [each.place for each in others.values()] + [each.name for each in recipe.inputs.values()]
+    for source in sources:
+        refuse_overwriting(out, source)
+    sweep = recipe.sweep(exemplar, load_others(others, find_method(recipe.method)))
     check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.picture_size, largest)
     with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
         cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
@@ -110,7 +122,7 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     base = SweepRecipe(name="sweep", method=method.id, axes=axes) if recipe is None else recipe
     changes: dict[str, Any] = {"axes": axes, "parameters": params.to_json()}
     if args.size is not None:
-        changes["size"] = parse_size(args.size)
+        changes["size"] = parse_result_size(args.size, method.dimensions)
     if args.seed is not None:
         changes["seed"] = parse_number("seed", args.seed, int)
     reading = parse_reading(args)

@@ -11,7 +11,7 @@ import numpy as np
 
 from texlab_core.methods.heeger_bergen.analysis import PlaneModel, Target, TextureModel
 from texlab_core.stats.histogram import resample
-from texlab_core.transforms.colour import SMALLEST_SPREAD, ColourAxes
+from texlab_core.transforms.colour import CONSTANT_SPREAD, SMALLEST_SPREAD, ColourAxes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,13 +44,15 @@ def quantile_mean(samples: Sequence[Sample], weights: Sequence[float]) -> Sample
     Returns
     -------
     ndarray
-        Sorted float32, as many as the longest sample has.
+        Sorted float32, as many as the longest sample with a weight has.
     """
-    count = max(sample.size for sample in samples)
+    chosen = [(sample, weight) for sample, weight in zip(samples, weights, strict=True) if weight > 0]
+    if len(chosen) == 1:
+        return chosen[0][0]
+    count = max(sample.size for sample, _ in chosen)
     total = np.zeros(count)
-    for sample, weight in zip(samples, weights, strict=True):
-        if weight:
-            total += weight * resample(sample, count)
+    for sample, weight in chosen:
+        total += weight * resample(sample, count)
     return total.astype(np.float32)
 
 
@@ -96,6 +98,8 @@ def colour_axes(mean: NDArray[np.float64], covariance: NDArray[np.float64], coun
     largest = np.argmax(np.abs(directions), axis=1)
     directions = directions * np.sign(directions[np.arange(len(directions)), largest])[:, None]
     keep = (spread >= SMALLEST_SPREAD) & (np.arange(len(spread)) < count)
+    # The first axis of a texture that hardly varies is kept, as of an image.
+    keep[0] = count > 0 and spread[0] >= CONSTANT_SPREAD
     return ColourAxes(mean, np.ascontiguousarray(directions[keep]), spread[keep])
 
 
@@ -145,7 +149,8 @@ def blend(exemplars: Sequence[Common], recipe: Recipe) -> Task[TextureModel]:
         bands = {}
         keys = next(each for each in targets if each is not None).bands
         for key in keys:
-            if key.level > levels or (key.kind != "lowpass" and key.level >= levels):
+            finer = key.level < levels or key.kind in ("highpass", "lowpass")
+            if not finer or key.level > levels:
                 continue
             bands[key] = _target([None if each is None else each.bands[key] for each in targets], recipe.band(key))
             yield bands[key].sample.size
