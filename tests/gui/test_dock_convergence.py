@@ -211,3 +211,14 @@ def test_themes_and_narrow(dock, scene):
         dock.set_theme(theme)
         assert dock.plot._series[0].item.opts["pen"].color().name() == theme.exemplar
         assert theme.exemplar in dock.legend.text()
+
+
+@pytest.mark.parametrize(("x", "shown"), [(0.2, "0: A 8, B 4"), (1.2, "1: A 4, B 2"), (9.0, "2: A 2, B 1")])
+def test_the_values_nearest_to_the_pointer_are_told(dock, x, shown):
+    curves = {"mean-distance": Curve.of([8, 4, 2], "Mean", y_label="W1")}
+    others = {"mean-distance": Curve.of([4, 2, 1], "Mean", y_label="W1")}
+    upper = column_of(noise(), title="A", curves=curves)
+    lower = column_of(noise(), title="B", column_id=2, curves=others)
+    feed(dock, scene_of(upper, lower, exemplar=noise()))
+    dock.plot.hovered.emit(x, 0.0)
+    assert dock.readout.text() == f"iteration {shown}"

@@ -241,9 +241,11 @@ def test_paste_and_copy(qtbot: Any, explorer: Explorer) -> None:
     qtbot.keyClick(explorer.window, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
     copied = QGuiApplication.clipboard().image()
     assert (copied.width(), copied.height()) == (48, 48)
-    colour = copied.pixelColor(3, 4)
     shown = explorer.controller.column_scene(explorer.session.selected_id).picture
-    assert [colour.red(), colour.green(), colour.blue()] == list(shown[4, 3])
+    assert not np.array_equal(shown, shown[::-1])
+    assert not np.array_equal(shown, shown[:, ::-1])
+    colours = [[copied.pixelColor(x, y).getRgb()[:3] for x in range(48)] for y in range(48)]
+    assert np.array_equal(colours, shown)
 
 
 def test_what_is_no_image_gets_one_sentence_and_changes_nothing(

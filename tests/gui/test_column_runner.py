@@ -1,0 +1,167 @@
+"""A column at work, without a window: what it keeps, what it shows, how long it thinks the full size takes."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.stub_method import StubParams, analyses, exemplar, stub  # noqa: F401
+from texlab.runs.column_run import Drafted, Finished, Progress, Waits
+from texlab.runs.column_runner import ColumnRunner, Shared
+from texlab.runs.slots import Rank, Slots
+from texlab.runs.sweep_run import SweepRun, sweep_of
+from texlab.runs.worker import Worker
+from texlab.state.session import Column, State
+from texlab.state.sweeps import SweepPlan
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.sheets.sweep import Vary
+from texlab_core.warming import Warmth
+
+pytestmark = pytest.mark.usefixtures("stub")
+COLUMN = Column(1, "stub", StubParams())
+
+
+class Idle:
+    """A worker that notes what it is to do and never does it."""
+
+    behind = False
+
+    def __init__(self) -> None:
+        self.asked: list[dict[str, Any]] = []
+        self.cancels = 0
+
+    def submit(self, request: Any, **how: Any) -> None:
+        self.asked.append({"request": request, **how})
+
+    def cancel(self) -> None:
+        self.cancels += 1
+
+
+@pytest.fixture
+def runner(qapp: Any) -> Any:
+    made = ColumnRunner(COLUMN, Shared(Slots(1), AnalysisCache(), Warmth()))
+    made.worker.close()
+    made.worker = Idle()  # type: ignore[assignment]
+    return made
+
+
+def start(runner: ColumnRunner, size: tuple[int, int] = (96, 128), **how: Any) -> dict[str, Any]:
+    runner.start(COLUMN, State(None, (COLUMN,), 5, size, 2), exemplar(), **how)
+    asked: dict[str, Any] = runner.worker.asked[-1]  # type: ignore[attr-defined]
+    return asked
+
+
+def finished(size: tuple[int, int], seconds: float, *, draft: bool = False) -> Finished:
+    image = np.zeros((*size, 3), np.float32)
+    result: Any = SimpleNamespace(image=image, elapsed_s=seconds, maps={}, details=None)
+    return Finished(result, np.zeros((*size, 3), np.uint8), (), draft)
+
+
+@pytest.mark.parametrize(
+    ("drawn", "seconds", "full"),
+    [((96, 128), 0.5, 0.5), ((48, 64), 0.5, 2.0), ((24, 128), 0.1, 0.4), ((200, 200), 0.3, 0.3)],
+)
+def test_the_time_of_the_full_size_grows_with_the_area(
+    runner: Any, drawn: Any, seconds: float, full: float
+) -> None:
+    start(runner)
+    runner._finished(finished(drawn, seconds, draft=True))
+    assert runner.seconds == pytest.approx(full)
+
+
+def test_the_next_draft_is_as_large_as_the_time_allows(runner: Any) -> None:
+    start(runner)
+    runner._finished(finished((96, 128), 0.2))
+    asked = start(runner, draft=True)
+    assert asked["request"].make_job().size == (48, 64)
+    assert asked["rank"] == Rank.DRAFT
+    assert start(runner)["request"].make_job().size == (96, 128)
+
+
+def test_what_is_asked_of_one_column_goes_before_what_all_do(runner: Any) -> None:
+    assert start(runner)["rank"] == Rank.REST
+    assert start(runner, alone=True)["rank"] == Rank.CHANGED
+
+
+def test_a_drag_lets_its_pictures_finish(runner: Any) -> None:
+    assert start(runner, draft=True)["patient"] is False
+    assert start(runner, draft=True)["patient"] is True
+    assert start(runner)["patient"] is False
+
+
+def test_the_last_result_stays_while_a_control_is_dragged(runner: Any) -> None:
+    start(runner)
+    end = finished((96, 128), 5.0)
+    runner._finished(end)
+    start(runner, draft=True)
+    assert (runner.scene.result, runner.scene.status, runner.scene.draft) == (end.result, "waiting", True)
+    runner._finished(finished((48, 64), 0.05, draft=True))
+    assert runner.scene.draft
+    start(runner)
+    assert (runner.scene.result, runner.scene.draft) == (None, False)
+
+
+def test_a_draft_of_the_methods_own_is_no_result(runner: Any) -> None:
+    start(runner)
+    image = np.zeros((8, 8, 3), np.float32)
+    runner._finished(Drafted(np.zeros((8, 8, 3), np.uint8), image))
+    assert (runner.scene.result, runner.scene.draft, runner.scene.image is image) == (None, True, True)
+
+
+def test_every_report_is_shown(runner: Any) -> None:
+    changes: list[Any] = []
+    runner.changed.connect(lambda: changes.append(runner.scene))
+    start(runner)
+    runner._progressed(Waits("loading"))
+    assert runner.scene.message == "loading"
+    runner._started()
+    assert runner.scene.status == "running"
+    image = np.zeros((8, 8, 3), np.float32)
+    runner._progressed(Progress(0.5, "half", {"a": 1.0}, np.zeros((8, 8, 3), np.uint8), image, (), 2.0))
+    assert (runner.scene.fraction, runner.scene.message, runner.scene.image is image) == (0.5, "half", True)
+    runner.stop()
+    assert runner.worker.cancels == 1
+    runner._cancelled()
+    assert runner.scene.status == "cancelled"
+    runner._failed("Too small.")
+    assert (runner.scene.status, runner.scene.message, runner.scene.picture) == ("failed", "Too small.", None)
+    assert len(changes) == 6
+
+
+def test_where_another_exemplar_stood_is_no_place_to_go_on_from(runner: Any) -> None:
+    start(runner)
+    runner._run.state = lambda: {"canvas": np.zeros(3)}
+    runner.stop()
+    assert runner.resumable
+    kept = runner._kept
+    # The job reads it last.
+    assert start(runner, go_on=True)["request"].make_job.args[-1] is kept
+    assert start(runner)["request"].make_job.args[-1] is None
+    other = exemplar(height=18)
+    runner.start(COLUMN, State(None, (COLUMN,), 5, (96, 128), 2), other, go_on=True)
+    assert runner.worker.asked[-1]["request"].make_job.args[-1] is None
+    assert not runner.resumable
+
+
+def test_the_cells_of_a_sweep_share_their_analysis(qapp: Any) -> None:
+    plan = SweepPlan((Vary("level", (0.0, 1.0, 2.0)), Vary("detail", (3, 4))), 16)
+    sweep = sweep_of(plan, State(None, (COLUMN,), 5, (24, 24), 2), COLUMN, exemplar())
+    analyses.clear()
+    task: Any = SimpleNamespace(
+        should_stop=lambda: False, due=lambda: False, progress=lambda value: None, give_way=lambda: 0.0
+    )
+    report = SweepRun(sweep, Slots(2))(task)
+    assert len(report.cells) == 6
+    assert sorted(analyses) == [3, 4]
+
+
+def test_the_worker_is_the_columns_own(qapp: Any) -> None:
+    made = ColumnRunner(COLUMN, Shared(Slots(1), AnalysisCache(), Warmth()))
+    assert isinstance(made.worker, Worker)
+    assert not made.ended
+    made.leave()
+    made.close()
+    assert made.ended
