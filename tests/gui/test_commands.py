@@ -70,3 +70,13 @@ def test_one_change_is_shown_once(explorer: Explorer, monkeypatch: pytest.Monkey
     # Also what changes nothing but the history.
     explorer.session.reset_history()
     assert shown == [11, 11]
+
+
+def test_width_and_height_are_not_taken_for_each_other(qtbot: Any, explorer: Explorer) -> None:
+    bar = explorer.window.toolbar
+    bar.width_box.setValue(64)
+    bar.height_box.setValue(40)
+    assert explorer.session.state.size == (40, 64)
+    explorer.session.set_size((24, 56))
+    assert (bar.height_box.value(), bar.width_box.value()) == (24, 56)
+    wait_idle(qtbot, explorer)
