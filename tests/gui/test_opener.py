@@ -173,7 +173,7 @@ def test_what_is_no_document_gets_one_sentence(bench: Bench, tmp_path: Path) -> 
 
 def test_a_result_becomes_the_exemplar(bench: Bench) -> None:
     pixels = np.random.default_rng(0).random((16, 20, 3), np.float32)
-    result: Any = SimpleNamespace(image=pixels, job=SimpleNamespace(method="msg"))
+    result: Any = SimpleNamespace(image=pixels, job=SimpleNamespace(method="msg", inputs={}))
     bench.opener.use_as_exemplar(result)
     bench.background.go_on()
     assert bench.sample.source.name == "msg result"

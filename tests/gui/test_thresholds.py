@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from de_bonet_scenes import finished, scene
+from de_bonet_scenes import exemplar, finished, scene
 from dock_scenes import check_controls, feed, shown
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QKeySequence
@@ -456,6 +456,30 @@ def test_says_why_there_is_no_table(qtbot):
     other = dataclasses.replace(finished(), title="MSG", params=methods()["msg"].params())
     assert feed(dock, scene(other)) is None
     assert dock.message == "MSG has no threshold table."
+
+
+@pytest.mark.parametrize("status", ["cancelled", "failed", "idle"])
+def test_the_table_needs_no_result(qtbot, status):
+    dock = shown(qtbot, ThresholdsDock())
+    stopped = dataclasses.replace(finished(), result=None, status=status)
+    with qtbot.waitSignal(dock.asks):
+        feed(dock, scene(stopped))
+    feed(dock, scene(stopped))
+    assert dock.message is None
+    expected = Axes.of(finished().result.model)
+    assert dock.editor.view.axes.features == expected.features
+    assert dock.editor.view.axes.sizes == expected.sizes
+    assert dock.distances.share == pytest.approx(
+        Distances.of(expected.model, 1, 0).passing(dock.editor.view.values[0, 0])
+    )
+    # Other features, or another exemplar, have another table: nothing of it is remembered.
+    fewer = dataclasses.replace(stopped, params=stopped.params.replace(orientations=2))
+    gray = dataclasses.replace(scene(stopped), exemplar=exemplar(1))
+    for other in (scene(fewer), gray):
+        with qtbot.waitSignal(dock.asks):
+            feed(dock, other)
+        feed(dock, other)
+        assert len(dock.editor.view.axes.features) < len(expected.features)
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])

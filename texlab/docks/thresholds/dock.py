@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker
@@ -12,21 +13,34 @@ from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.docks.thresholds.distance_view import Distances, DistanceView
 from texlab.docks.thresholds.editor import TableEditor
-from texlab.docks.thresholds.table import KnownAxes, law_of, make_view, table_field
+from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view, origin_of, table_field
 from texlab.state.intentions import EditField
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
+from texlab_core.engine.registry import find_method
+from texlab_core.errors import Cancelled
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
+from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.docks.thresholds.table import TableView
+    from texlab.docks.thresholds.table import Origin, TableView
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
 
 SIDE = 250
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """The axes of a column, and what they depend on."""
+
+    column_id: int
+    axes: Axes
+    origin: Origin
 
 
 class ThresholdsDock(FramedDock):
@@ -48,6 +62,7 @@ class ThresholdsDock(FramedDock):
         self._known = KnownAxes()
         self._locks: dict[int, frozenset[Cell]] = {}
         self._column: ColumnScene | None = None
+        self._exemplar: ImageInput | None = None
         self._field = ""
         self.editor = TableEditor("thresholds-table")
         self.distances = DistanceView("thresholds-distances")
@@ -134,13 +149,17 @@ class ThresholdsDock(FramedDock):
         if column is None or field is None:
             self.why = "" if column is None else f"{column.title} has no threshold table."
             return None
-        axes = self._known.of(column)
+        self._exemplar = scene.exemplar
+        axes = self._known.of(column, scene.exemplar)
+        if axes is None and scene.exemplar is not None and column.status not in ("waiting", "running"):
+            return self._ask_axes(column, scene.exemplar)
         if axes is None:
             self.why = f"The levels and features of {column.title} are known when it has run once."
             return None
         if axes.depth == 0:
             self.why = "The pyramid has a single level, which is copied: there is nothing to compare."
             return None
+        self.why = ""
         self._show_table(column, field)
         k, name = self.editor.selected_cells()[-1]
         model, feature = axes.model, [each.name for each in axes.features].index(name)
@@ -150,8 +169,27 @@ class ThresholdsDock(FramedDock):
 
         return Question((self.name, Same(model), k, feature), compute)
 
-    def show_answer(self, answer: Distances) -> None:
-        """Show the distances of the chosen cell."""
+    def _ask_axes(self, column: ColumnScene, exemplar: ImageInput) -> Question:
+        """Ask for the analysis of a column that was stopped before it had a result."""
+        method, params, column_id = find_method(column.method), column.params, column.id
+        inputs = {"exemplar": exemplar, **dict(column.inputs)}
+        origin = origin_of(exemplar, params)
+
+        def compute(should_stop: Callable[[], bool]) -> Known:
+            def look() -> None:
+                if should_stop():
+                    raise Cancelled
+
+            return Known(column_id, Axes.of(finish(method.analyze(inputs, params), look)), origin)
+
+        return Question((self.name, column_id, origin), compute)
+
+    def show_answer(self, answer: Distances | Known) -> None:
+        """Show the distances of the chosen cell, or ask for them when levels and features are known by now."""
+        if isinstance(answer, Known):
+            self._known.learn(answer.column_id, answer.axes, answer.origin)
+            self.ask()
+            return
         self.distances.show_distances(answer)
         self._show_cell()
 
@@ -165,7 +203,7 @@ class ThresholdsDock(FramedDock):
         self.measures.setText(measures_text(column))
 
     def _view(self, column: ColumnScene, table: ThresholdTable) -> TableView | None:
-        axes = self._known.of(column)
+        axes = self._known.of(column, self._exemplar)
         if axes is None:
             return None
         return make_view(axes, self.arrangement.currentData(), table, law_of(column.params))

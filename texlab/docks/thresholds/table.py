@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from texlab.state.scene import ColumnScene
+    from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
     from texlab_core.methods.de_bonet.features import Feature
     from texlab_core.methods.de_bonet.thresholds import Cell
@@ -102,25 +103,52 @@ class Axes:
         return self.depth + 1 - k
 
 
+# What an analysis depends on: the hash of its exemplar, and the parameters that matter to it.
+Origin = tuple[str, tuple[tuple[str, object], ...]]
+
+
+def origin_of(exemplar: Input, params: Params) -> Origin:
+    """Return what the analysis of this exemplar with these parameters depends on."""
+    return exemplar.sha256, params.analysis_key()
+
+
 class KnownAxes:
-    """The axes of every column, remembered while a column has no result."""
+    """The axes of every column, while they are those of its exemplar and parameters."""
 
     def __init__(self) -> None:
-        self._known: dict[int, Axes] = {}
+        self._known: dict[int, tuple[Axes, Origin]] = {}
 
-    def of(self, column: ColumnScene) -> Axes | None:
-        """Return the axes of a column, the last known ones while it has no result."""
-        model: object = None
-        if column.result is not None:
-            details = column.result.details
-            # A tile may have fewer levels than the exemplar's own pyramid.
-            model = details.sampling.analysis if isinstance(details, DeBonetDetails) else column.result.model
+    def of(self, column: ColumnScene, exemplar: Input | None = None) -> Axes | None:
+        """Return the axes of a column: its result's; without one, those that are known for the same analysis.
+
+        Parameters
+        ----------
+        column
+            The column.
+        exemplar
+            What the next result will be made from; None takes the one that the known axes are of.
+        """
         known = self._known.get(column.id)
-        if isinstance(model, Analysis) and (known is None or known.model is not model):
-            known = self._known[column.id] = Axes.of(model)
-            while len(self._known) > MOST_KNOWN:
-                del self._known[next(iter(self._known))]
-        return known
+        result = column.result
+        if result is None:
+            if known is None:
+                return None
+            axes, (pixels, _) = known
+            wanted = (pixels if exemplar is None else exemplar.sha256), column.params.analysis_key()
+            return axes if known[1] == wanted else None
+        details = result.details
+        # A tile may have fewer levels than the exemplar's own pyramid.
+        model: object = details.sampling.analysis if isinstance(details, DeBonetDetails) else result.model
+        if isinstance(model, Analysis) and (known is None or known[0].model is not model):
+            self.learn(column.id, Axes.of(model), origin_of(result.job.inputs["exemplar"], result.job.params))
+        found = self._known.get(column.id)
+        return None if found is None else found[0]
+
+    def learn(self, column_id: int, axes: Axes, origin: Origin) -> None:
+        """Remember the axes of an analysis."""
+        self._known[column_id] = axes, origin
+        while len(self._known) > MOST_KNOWN:
+            del self._known[next(iter(self._known))]
 
 
 @dataclass(frozen=True)
