@@ -13,6 +13,7 @@ import pytest
 import texlab
 import texlab_core
 from texlab.cli.commands._sources import _load_arrays
+from texlab.cli.defaults import _tables
 from texlab.cli.terminal import append_to_log
 from texlab.storage.kept_exemplar import Kept
 from texlab.storage.kept_exemplar import load as load_kept
@@ -125,6 +126,7 @@ READERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
     "list of images": ("a.txt", lambda path: batch_lines([path.name], path.parent)),
     "document of the window": ("a.json", read_document),
     "source of the window": ("a.png", read_source),
+    "defaults of the command line": ("a.toml", _tables),
     "settings": ("settings.json", read_settings),
     "arrays of the command line": ("a.npz", _load_arrays),
     "solid": ("a.npy", read_volume),
@@ -236,9 +238,13 @@ ALLOWED = {
     ("texlab_core/files/regular.py", "os.open"),
     ("texlab_core/files/regular.py", "os.fdopen"),
     ("texlab_core/files/whole.py", "os.open"),
-    # Discards what cannot be printed.
+    # Discards what cannot or shall not be printed.
     ("texlab/cli/main.py", "os.open"),
     ("texlab/cli/terminal.py", "os.open"),
+    ("texlab/cli/terminal.py", "open"),
+    ("texlab/cli/piping.py", "open"),
+    # Its own result, in a folder that it has just made.
+    ("texlab/cli/piping.py", "out.read_bytes"),
     # Is given a descriptor that a reader has opened.
     ("texlab/storage/arrays.py", "np.load"),
     ("texlab/cli/commands/_sources.py", "np.load"),

@@ -192,7 +192,8 @@ def give_histogram(values, target):
 
 @pytest.mark.parametrize("orientations", [1, 3, 4])
 def test_the_whole_method_is_the_papers_listing(orientations):
-    exemplar = as_exemplar(np.random.default_rng(4).normal(size=(32, 32)).cumsum(0).cumsum(1).astype(np.float32))
+    walk = np.random.default_rng(4).normal(size=(32, 32)).cumsum(0).cumsum(1)
+    exemplar = as_exemplar(((walk - walk.min()) / np.ptp(walk)).astype(np.float32))
     texture_pixels = exemplar.pixels[..., 0].astype(np.float64)
     literal = Literal(32, 2, orientations)
     targets = literal.build(texture_pixels)

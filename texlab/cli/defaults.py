@@ -62,15 +62,20 @@ def with_defaults(parser: Parser, given: Sequence[str]) -> list[str]:
 def _tables(path: Path) -> dict[str, dict[str, Any]]:
     import tomllib
 
+    from texlab_core.files.regular import TooLongError, read_regular, reason
+
     try:
-        with open(path, "rb") as file:
-            text = file.read(MAX_BYTES + 1)
+        text = read_regular(path, MAX_BYTES)
     except (FileNotFoundError, NotADirectoryError):
+        if path.is_symlink():
+            raise InputError(f"The defaults in {path} cannot be read (the link leads nowhere).") from None
         return {}
+    except TooLongError as error:
+        raise InputError(
+            f"The defaults in {path} are longer than {MAX_BYTES} bytes, the most that is read."
+        ) from error
     except OSError as error:
-        raise InputError(f"The defaults in {path} cannot be read ({error.strerror}).") from error
-    if len(text) > MAX_BYTES:
-        raise InputError(f"The defaults in {path} are longer than {MAX_BYTES} bytes, the most that is read.")
+        raise InputError(f"The defaults in {path} cannot be read ({reason(error)}).") from error
     try:
         found = tomllib.loads(text.decode("utf-8-sig"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
