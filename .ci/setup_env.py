@@ -2,8 +2,8 @@
 
     python3 .ci/setup_env.py run|test|bench
 
-With TEXLAB_LOCKED=1 it installs the versions of requirements/lock.txt and checks their hashes; without, the newest
-ones that pyproject.toml allows.
+With TEXLAB_LOCKED=1 it installs the versions of requirements/lock.txt and checks their hashes; without, or where
+one of them cannot be had, the newest ones that pyproject.toml allows.
 
 Standard library only, since nothing else is there yet. As root on Debian and its relatives it installs missing
 system packages; otherwise it prints the one command that does, and exits with 2.
@@ -22,6 +22,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
 LOCK = ROOT / "requirements" / "lock.txt"
+# How pip says that a file is not the one that was locked.
+MISMATCH = "DO NOT MATCH THE HASHES"
 EXTRAS = {"run": "", "test": "[test]", "bench": "[test,bench]"}
 INCLUDED = {"run": ("run",), "test": ("run", "test"), "bench": ("run", "test", "bench")}
 
@@ -70,9 +72,13 @@ def main(goal: str) -> int:
     if os.environ.get("TEXLAB_LOCKED") == "1":
         # Exactly what was tested, byte for byte; then TexLab itself, which asks for nothing more.
         locked = [*pip, *quiet, "--require-hashes", "--requirement", str(LOCK)]
-        if subprocess.run(locked, cwd=ROOT, check=False).returncode:
-            return refuse("pip could not install what requirements/lock.txt says; its message is above.")
-        wanted = ["--no-deps", "--editable", "."]
+        tried = subprocess.run(locked, cwd=ROOT, stderr=subprocess.PIPE, text=True, check=False)
+        if tried.returncode and MISMATCH in tried.stderr:
+            return refuse(f"{tried.stderr}A file has another hash than requirements/lock.txt says.")
+        if tried.returncode:
+            print(f"{tried.stderr}The locked versions cannot be had here; the newest are taken.", file=sys.stderr)
+        else:
+            wanted = ["--no-deps", "--editable", "."]
     done = subprocess.run([*pip, *quiet, *wanted], cwd=ROOT, check=False)
     if done.returncode:
         return refuse("pip could not install TexLab; its message is above.")

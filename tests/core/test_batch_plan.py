@@ -176,6 +176,8 @@ def test_presets_and_settings(folder: Path) -> None:
         ({"sizes": ["0x"]}, "sizes: must be width and height"),
         ({"sizes": ["0x8"]}, "size: must be height and width"),
         ({"sizes": [8]}, "sizes: must be a text"),
+        ({"measures": "w1-pixels"}, "measures: must be quick, all, or a list of ids"),
+        ({"measures": ["w1-pixel"]}, "did you mean w1-pixels"),
         ({"bits": 12}, "bits: must be 8 or 16"),
         ({"bits": True}, "bits: must be 8 or 16"),
         ({"colour": 1}, "key: must be one of"),

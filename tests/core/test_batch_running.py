@@ -28,7 +28,7 @@ from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.formats.writing import quantize
-from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.registry import find_measure, measure_all, measure_quick
 from texlab_core.measures.subject import Subject
 
 if TYPE_CHECKING:
@@ -159,6 +159,24 @@ def test_the_same_job_twice_is_made_once(tmp_path: Path) -> None:
     )
     result = run_batch(plan, tmp_path / "out")
     assert (plan.count, result.made, result.repeated, len(result.rows)) == (12, 6, 6, 6)
+
+
+def test_a_plan_can_choose_what_is_measured(tmp_path: Path) -> None:
+    plan = small_plan(tmp_path, methods=["tiling"], seeds=[1], measures=["w1-pixels", "tile-share"])
+    result = run_batch(plan, tmp_path / "out")
+    assert {tuple(row.measures or {}) for row in result.rows} == {("tile-share", "w1-pixels")}
+    page = (tmp_path / "out" / "index.html").read_text("utf-8")
+    measure = find_measure("w1-pixels")
+    assert f"<button>{measure.title}</button>" in page
+    value = (result.rows[0].measures or {})["w1-pixels"]
+    assert value is not None
+    assert f">{measure.text(value)}</td>" in page
+    whole = run_batch(small_plan(tmp_path, methods=["tiling"], seeds=[1], measures="all"), tmp_path / "out")
+    alone = synthesize(tmp_path / "in" / "photo-0.png", "tiling", size=(12, 20), seed=1)
+    assert whole.rows[0].measures == measure_all(Subject.of_result(alone))
+    # Measured otherwise, it is another record.
+    again = run_batch(small_plan(tmp_path, methods=["tiling"], seeds=[1]), tmp_path / "out")
+    assert (again.made, again.found) == (3, 0)
 
 
 def test_a_sample_runs_only_its_jobs(tmp_path: Path) -> None:

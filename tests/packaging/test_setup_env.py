@@ -87,16 +87,40 @@ def test_a_virtual_x_server_is_welcome_but_not_needed(
     assert (setup_env.VENV / ".ready-run").exists()
 
 
-def test_locked_versions_are_installed_with_their_hashes(
-    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def locked(setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The script on a machine that has everything, asked for the locked versions."""
     monkeypatch.setattr(setup_env, "loads", lambda soname: True)
     monkeypatch.setattr(setup_env.importlib.util, "find_spec", lambda name: True)
     monkeypatch.setenv("TEXLAB_LOCKED", "1")
-    assert setup_env.main("test") == 0
-    locked, own = setup_env.commands[-2:]
-    assert locked[-3:] == ["--require-hashes", "--requirement", str(setup_env.LOCK)]
+    return setup_env
+
+
+def test_locked_versions_are_installed_with_their_hashes(locked: ModuleType) -> None:
+    assert locked.main("test") == 0
+    versions, own = locked.commands[-2:]
+    assert versions[-3:] == ["--require-hashes", "--requirement", str(locked.LOCK)]
     assert own[-3:] == ["--no-deps", "--editable", "."]
+
+
+@pytest.mark.parametrize(
+    ("said", "code", "last"),
+    [
+        ("ERROR: THESE PACKAGES DO NOT MATCH THE HASHES\n", 2, "--requirement"),
+        ("ERROR: No matching distribution found\n", 0, "--editable"),
+    ],
+)
+def test_a_wrong_hash_is_refused_and_a_missing_version_replaced(
+    locked: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: Any, said: str, code: int, last: str
+) -> None:
+    def run(command: list[str], **_: Any) -> SimpleNamespace:
+        locked.commands.append(command)
+        return SimpleNamespace(returncode=int("--require-hashes" in command), stderr=said)
+
+    monkeypatch.setattr(locked.subprocess, "run", run)
+    assert locked.main("test") == code
+    assert last in locked.commands[-1]
+    assert said.strip() in capsys.readouterr().err
 
 
 def test_only_a_window_needs_the_libraries_of_x11(setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,8 @@ from html import escape
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from texlab_core.measures.registry import measures as known_measures
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -97,7 +99,8 @@ def page_of(name: str, note: str, rows: Sequence[Row], measures: Sequence[str], 
     options = "".join(f"<option>{escape(each)}</option>" for each in variants)
     headers = ["<th>Exemplar</th>", "<th>Result</th>"]
     headers += [f"<th><button>{each}</button></th>" for each in ("Input", "Method", "Size")]
-    headers += [f'<th class="number"><button>{escape(each)}</button></th>' for each in ("Seed", *measures)]
+    headers.append('<th class="number"><button>Seed</button></th>')
+    headers += [_heading(name) for name in measures]
     headers.append("<th><button>Findings</button></th>")
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -132,6 +135,20 @@ recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 """
 
 
+def _heading(name: str) -> str:
+    measure = known_measures().get(name)
+    if measure is None:
+        return f'<th class="number"><button>{escape(name)}</button></th>'
+    better = "" if measure.better == "neither" else f" The {measure.better}, the better."
+    said = escape(f"{measure.summary}{better}")
+    return f'<th class="number" title="{said}"><button>{escape(measure.title)}</button></th>'
+
+
+def _written(name: str, value: float) -> str:
+    measure = known_measures().get(name)
+    return f"{value:.4g}" if measure is None else measure.text(value)
+
+
 def _row(row: Row, measures: Sequence[str]) -> str:
     about = row.about
     state = "failed" if row.error else " ".join(["made", *(["found"] if row.findings else [])])
@@ -147,7 +164,7 @@ def _row(row: Row, measures: Sequence[str]) -> str:
     ]
     for name in measures:
         value = (row.measures or {}).get(name)
-        shown = "" if value is None else f"{value:.4g}"
+        shown = "" if value is None else escape(_written(name, value))
         cells.append(f'<td class="number" data-value="{"" if value is None else repr(value)}">{shown}</td>')
     if row.error:
         cells.append(f'<td class="error">{escape(row.error)}</td>')

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import math
@@ -12,8 +13,8 @@ from texlab_core.documents.reading import KEY
 from texlab_core.documents.recipe import recipe_json
 from texlab_core.images.formats.volumes import encode_volume
 from texlab_core.images.formats.writing import encode_image, encode_png, quantize
-from texlab_core.measures.registry import measure_quick
-from texlab_core.measures.subject import Subject
+from texlab_core.measures.registry import measure_all, measure_quick
+from texlab_core.measures.subject import PreparedCache, Subject
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,10 +57,22 @@ class Picture:
     suffix: str = ".png"
 
 
-def finish(result: Result, *, bits: Bits = 8) -> Picture:
-    """Return what is kept of a result."""
+def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None = None) -> Picture:
+    """Return what is kept of a result.
+
+    Parameters
+    ----------
+    result
+        What a job made.
+    bits
+        For each sample of the picture.
+    measures
+        Ids of the measures to take; None takes those that cost next to nothing.
+    """
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
     whole = result.image if result.volume is None else result.volume
+    subject = Subject.of_result(result, _prepared())
+    taken = measure_quick(subject) if measures is None else measure_all(subject, measures)
     digest = hashlib.sha256(f"{whole.shape}".encode())
     digest.update(whole.tobytes())
     if result.volume is None:
@@ -71,9 +84,15 @@ def finish(result: Result, *, bits: Bits = 8) -> Picture:
         suffix=suffix,
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
-        measures=dict(measure_quick(Subject.of_result(result))),
+        measures=dict(taken),
         notes=result.notes,
     )
+
+
+@functools.cache
+def _prepared() -> PreparedCache:
+    """Return what this process has prepared of the last exemplars for measuring."""
+    return PreparedCache()
 
 
 def thumbnail(image: FloatImage, longest: int = THUMBNAIL) -> bytes:

@@ -17,6 +17,7 @@ from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.regular import read_regular, reason
 from texlab_core.files.resources import resource
+from texlab_core.measures.registry import find_measure, measures
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,7 +31,7 @@ BUNDLED = "gallery:"
 MAX_JOBS = 100_000
 _MAX_LIST = 10_000
 _BITS: Mapping[int, Bits] = {8: 8, 16: 16}
-_KEYS = ("format", "version", "name", "note", "inputs", "methods", "presets", "seeds", "sizes", "bits")
+_KEYS = ("format", "version", "name", "note", "inputs", "methods", "presets", "seeds", "sizes", "bits", "measures")
 
 
 class PlanError(InputError):
@@ -95,6 +96,8 @@ class Plan:
         For people.
     bits
         8 or 16 for each sample of the pictures.
+    measures
+        Ids of what is measured in each result; None measures what costs next to nothing.
 
     Raises
     ------
@@ -109,6 +112,7 @@ class Plan:
     name: str = "batch"
     note: str = ""
     bits: Bits = 8
+    measures: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         for field in ("exemplars", "variants", "seeds", "sizes"):
@@ -209,7 +213,7 @@ def plan_from_json(
     ----------
     data
         An object with ``inputs``, ``methods`` or ``presets`` or both, and perhaps ``seeds`` (default ``[0]``),
-        ``sizes`` (``["1x"]``), ``name``, ``note``, ``bits``, ``format`` and ``version``.
+        ``sizes`` (``["1x"]``), ``measures``, ``name``, ``note``, ``bits``, ``format`` and ``version``.
     folder
         What relative paths are relative to.
     what
@@ -251,7 +255,18 @@ def _plan(data: object, folder: Path, presets: PresetStore | None) -> Plan:
         name=_text(data.get("name", "batch"), "name"),
         note=_text(data.get("note", ""), "note"),
         bits=_BITS[bits],
+        measures=_measures(data.get("measures")),
     )
+
+
+def _measures(given: object) -> tuple[str, ...] | None:
+    if given in (None, "quick"):
+        return None
+    if given == "all":
+        return tuple(each.id for each in measures().values() if not each.slow)
+    if not isinstance(given, list) or not all(isinstance(each, str) for each in given):
+        raise PlanError(f"measures: must be quick, all, or a list of ids, got {strict_json.shorten(given)}.")
+    return tuple(find_measure(each).id for each in _distinct(given))
 
 
 def _list(data: dict[str, Any], key: str, default: Sequence[object] = ()) -> list[Any]:

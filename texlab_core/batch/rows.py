@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
+from texlab_core.measures.registry import measures
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -76,5 +78,7 @@ class Row:
 
 
 def measure_names(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return the names of all measures, in alphabetical order."""
-    return tuple(sorted({name for row in rows for name in row.measures or {}}))
+    """Return the names of all measures: in the registry's order, then what only methods know."""
+    found = {name for row in rows for name in row.measures or {}}
+    known = [name for name in measures() if name in found]
+    return (*known, *sorted(found - set(known)))

@@ -151,6 +151,9 @@ class _Run:
         on_progress: Callable[[Progress], None] | None,
     ) -> None:
         self.plan, self.folder, self.place = plan, folder, place
+        # What is kept of a result is part of what it is known by.
+        self.kept: dict[str, Any] = {"bits": plan.bits, "measures": plan.measures}
+        self.finish = partial(finish, **self.kept)
         self.only = None if sample is None else plan.sample(sample)
         self.total = plan.count if self.only is None else len(self.only)
         self.on_progress = on_progress
@@ -225,9 +228,7 @@ class _Run:
             except InputError as error:
                 self._fail(place, about, str(error))
                 continue
-            order, parcels = make_order(
-                job, partial(finish, bits=self.plan.bits), packer, bits=self.plan.bits, called=about["input"]
-            )
+            order, parcels = make_order(job, self.finish, packer, called=about["input"], **self.kept)
             if order.key in self.places:
                 self.repeated += 1
                 self.forecast.drop()
