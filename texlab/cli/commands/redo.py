@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import refuse_overwriting
 from texlab.cli.commands._outputs import Outputs, add_output_options, check_outputs, described, make, summary_of
-from texlab.cli.terminal import complain
+from texlab.cli.terminal import complain, interrupted
 from texlab_core.errors import InputError, ParamError, RecipeError
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def _pixels(path: str, dimensions: int) -> Decoded | None:
 
     if Path(path).suffix.lower() not in (".png", ".tif", ".tiff"):
         return None
-    return read_image(Path(path), path)
+    return read_image(Path(path), path, should_stop=interrupted)
 
 
 def _bits(args: argparse.Namespace, before: Decoded | None, dimensions: int) -> Bits | None:
