@@ -27,6 +27,7 @@ WRITERS = {
     "compare": (["compare", EXEMPLAR, "--methods", "tiling", "--out"], ".png"),
     "sweep": (["sweep", EXEMPLAR, "--method", "tiling", "--vary", "seed=1:2:2", "--out"], ".png"),
     "encode": (["encode", EXEMPLAR, "--out"], ".msg.json"),
+    "solid": (["solid", "missing.tif", "--out"], ".png"),
     "screenshot": (["screenshot", "--out"], ".png"),
 }
 READERS = {
