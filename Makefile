@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench bar wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -23,6 +23,10 @@ fmt: .venv/.ready-test
 
 bench: .venv/.ready-bench
 	@$(PY) -m pytest tests/benchmarks -q -s --no-xvfb -m benchmark -o python_files='bench_*.py'
+
+# De Bonet's defaults against what they have to reach; writes the table of the help page.
+bar: .venv/.ready-run
+	@$(PY) -m texlab_core.figures.defaults --write resources/help/de-bonet.md
 
 wheel: .venv/.ready-run
 	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist

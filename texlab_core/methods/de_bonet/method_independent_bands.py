@@ -51,6 +51,19 @@ class BandsParams(Params):
             group="Pyramid",
         ),
     ] = "reflect"
+    fitting: Annotated[
+        Literal["pad", "crop"],
+        Knob(
+            help="How the sides of the exemplar become multiples of 2^N, N the number of halvings.",
+            stage="analysis",
+            choices={
+                "pad": "goes on below and on the right as the border says; nothing is lost",
+                "crop": "reduced to its centre",
+            },
+            formerly="crop",
+            group="Pyramid",
+        ),
+    ] = "pad"
 
 
 def check(inputs: Inputs, params: BandsParams, size: tuple[int, int]) -> None:
@@ -58,7 +71,7 @@ def check(inputs: Inputs, params: BandsParams, size: tuple[int, int]) -> None:
     from texlab_core.methods.de_bonet.fitting import choose_depth
     from texlab_core.methods.de_bonet.growth import check_size
 
-    check_size(size, choose_depth(*exemplar_of(inputs).size, params.coarsest_side))
+    check_size(size, choose_depth(*exemplar_of(inputs).size, params.coarsest_side, params.fitting))
 
 
 def analyze(inputs: Inputs, params: BandsParams) -> Generator[Step, None, Analysis]:
@@ -67,7 +80,11 @@ def analyze(inputs: Inputs, params: BandsParams) -> Generator[Step, None, Analys
     from texlab_core.methods.de_bonet.growth import analyze_in_steps
 
     steps = analyze_steps(
-        exemplar_of(inputs).pixels, smallest=params.coarsest_side, border=params.border, filters="laplacian"
+        exemplar_of(inputs).pixels,
+        smallest=params.coarsest_side,
+        border=params.border,
+        fitting=params.fitting,
+        filters="laplacian",
     )
     return (yield from analyze_in_steps(steps, "pyramid"))
 
