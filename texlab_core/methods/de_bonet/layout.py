@@ -13,6 +13,7 @@ from __future__ import annotations
 import heapq
 import itertools
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -227,7 +228,9 @@ def _place(
                 lines.before, lines.behind, lines.table_before, lines.table_behind, cost, same,
             )  # fmt: skip
         # Going on as a neighbour does would fit best, and repeat the exemplar.
-        allowed = np.flatnonzero(~same) if not same.all() else np.arange(same.size)
+        allowed = np.flatnonzero(~same)
+        if allowed.size == 0:
+            allowed = np.arange(same.size)
         if neighbours:
             allowed = allowed[np.argsort(cost[allowed], kind="stable")[: layout.places]]
         chosen = int(allowed[random.integers(allowed.size)])
@@ -243,7 +246,15 @@ def _places(
     region: _Region, room: tuple[int, int], cyclic: bool, random: np.random.Generator
 ) -> NDArray[np.int64]:
     """Return where in the exemplar the box of a region can lie, (2, n): everywhere, or where it fits."""
-    free = room if cyclic else (room[0] - int(region.inside[0].max()), room[1] - int(region.inside[1].max()))
-    count = free[0] * free[1]
-    numbers = np.arange(count) if count <= _MOST_PLACES else random.choice(count, _MOST_PLACES, replace=False)
-    return np.stack(np.divmod(numbers, free[1]))
+    extent = (0, 0) if cyclic else region.inside.max(1).tolist()
+    rows, columns = room[0] - extent[0], room[1] - extent[1]
+    if rows * columns <= _MOST_PLACES:
+        return _every_place(rows, columns)
+    chosen = random.choice(rows * columns, _MOST_PLACES, replace=False)
+    return np.stack(np.divmod(chosen, columns))
+
+
+@lru_cache(maxsize=256)
+def _every_place(rows: int, columns: int) -> NDArray[np.int64]:
+    # Kernels are compiled anew for arrays that are read-only; nobody writes into this one.
+    return np.indices((rows, columns)).reshape(2, -1)
