@@ -31,8 +31,6 @@ Coarsest = Literal["patches", "fit", "shift", "tile", "iid"]
 
 # Places that are compared for one patch.
 _MOST_PLACES = 512
-# Patches between two looks.
-_AT_ONCE = 16
 # How far the middle of a patch may lie from its place in the pattern, as a share of the patch.
 _JITTER = 0.5
 
@@ -218,7 +216,7 @@ def _place(
     taken = np.full((2, output.rows, output.columns), -1, np.int64)
     cyclic = layout.coarsest == "fit"
     extent = np.array([seams.rows, seams.columns])
-    for count, region in enumerate(_connected(list(regions), output, layout.periodic)):
+    for region in _connected(list(regions), output, layout.periodic):
         places = _places(region, room, cyclic, random)
         cost, same = np.zeros(places.shape[1]), np.zeros(places.shape[1], np.bool_)
         neighbours = 0
@@ -236,8 +234,7 @@ def _place(
         chosen = int(allowed[random.integers(allowed.size)])
         found = region.inside + places[:, chosen, None]
         taken[:, region.cells[0], region.cells[1]] = found % extent[:, None] if cyclic else found
-        if count % _AT_ONCE == 0:
-            yield
+        yield
     source: NDArray[np.int32] = (taken[0] * seams.columns + taken[1]).ravel().astype(np.int32)
     return source
 

@@ -268,8 +268,8 @@ class DeBonetParams(Params):
                 "level": "one constant per level: the mean variance of its features",
                 "range": "the squared range of the feature at its level",
                 "sum": "the sum of its squares over all pixels; nearly everything matches",
-                "printed": "the size of its sum over all pixels, as printed: chance decides, since bands and "
-                "derivatives sum to nearly nothing",
+                "printed": "the size of its sum over all pixels, as printed: positive and negative values cancel, "
+                "and chance decides how much matches",
             },
             source="De Bonet 1997, eq. 10",
             group="Features",

@@ -15,7 +15,7 @@ STRIP = 6
 # A strip is thinned out along its line to about this many samples.
 _SAMPLES = 512
 # All pairs are compared beforehand up to this many lines.
-_TABLE = 512
+_TABLE = 320
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -61,12 +61,11 @@ class Seams:
     @classmethod
     def of(cls, pixels: NDArray[np.float32], rows: int, columns: int) -> Seams:
         """Cut the strips out of an exemplar, (rows * n, columns * m, C) float32; it goes on periodically."""
-        image = np.round(np.clip(pixels, 0, 1) * 255).astype(np.uint8)
-        down = _strips(image, rows, columns)
+        down = _strips(pixels, rows, columns)
         # The same for the transposed picture, whose lines come column by column.
         across = (
             np.ascontiguousarray(strips.reshape(columns, rows + 1, -1).swapaxes(0, 1)).reshape(len(strips), -1)
-            for strips in _strips(np.ascontiguousarray(image.swapaxes(0, 1)), columns, rows)
+            for strips in _strips(pixels.swapaxes(0, 1), columns, rows)
         )
         return cls(rows, columns, (Lines.of(*down), Lines.of(*across)))
 
@@ -81,16 +80,17 @@ def _pairs(strips: NDArray[np.uint8]) -> NDArray[np.int32]:
     return pairs
 
 
-def _strips(image: NDArray[np.uint8], rows: int, columns: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+def _strips(pixels: NDArray[np.float32], rows: int, columns: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """Return what lies left and right of all lines that run down, each (rows * (columns + 1), samples)."""
-    height, width, channels = image.shape
+    height, width, channels = pixels.shape
     tall, wide = height // rows, width // columns
     strip = min(STRIP, width)
     every = max(1, tall * strip * channels // _SAMPLES)
-    x = np.arange(columns + 1)[:, None] * wide
+    down = (np.arange(rows)[:, None] * tall + np.arange(0, tall, every)).ravel()
     found = []
     for shift in (-strip, 0):
-        across = (x + shift + np.arange(strip)) % width
-        taken = image[:, across].reshape(rows, tall, columns + 1, strip, channels)[:, ::every]
-        found.append(np.ascontiguousarray(taken.swapaxes(1, 2)).reshape(rows * (columns + 1), -1))
+        across = (np.arange(columns + 1)[:, None] * wide + shift + np.arange(strip)).ravel() % width
+        taken = np.round(np.clip(pixels[np.ix_(down, across)], 0, 1) * 255).astype(np.uint8)
+        lines = taken.reshape(rows, -1, columns + 1, strip * channels).swapaxes(1, 2)
+        found.append(np.ascontiguousarray(lines).reshape(rows * (columns + 1), -1))
     return found[0], found[1]
