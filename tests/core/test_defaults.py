@@ -40,7 +40,7 @@ def test_what_falls_short_is_said() -> None:
 
 def test_homogeneous_textures() -> None:
     names = homogeneous()
-    assert len(names) == 36
+    assert len(names) == 39
     assert not any(name.startswith("inhomogeneous") for name in names)
     assert {each.name for each in gallery()} >= defaults._UNEVEN
 

@@ -53,8 +53,11 @@ _UNEVEN = frozenset(
         "oriented-fur",
         "oriented-oldwood",
         "oriented-woodgrain",
+        "stochastic-marble",
         "stochastic-sea",
+        "structured-butterfly",
         "structured-coins",
+        "structured-coral",
     }
 )
 _SHIFTED: Mapping[str, Any] = MappingProxyType({"coarsest": "shift", "coarsest_side": 8, "fitting": "crop"})
