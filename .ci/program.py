@@ -43,7 +43,9 @@ def main() -> int:
     if not python.exists():
         venv.create(WORK / "env", with_pip=True)
     pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    entry = WORK / "texlab.py"
+    # Under another name than the package, which it would hide.
+    entry = WORK / "entry" / "start_texlab.py"
+    entry.parent.mkdir(parents=True, exist_ok=True)
     entry.write_text(ENTRY, "utf-8")
     options = ["--noconfirm", "--onedir", "--name", "texlab", "--distpath", str(DIST)]
     options += ["--workpath", str(WORK / "work"), "--specpath", str(WORK)]
