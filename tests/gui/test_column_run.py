@@ -1,27 +1,33 @@
-"""One run of a column, without its worker: what it measures at its end, and that it can be stopped there."""
+"""One run of a column, without its worker: what is measured after it, and that it can be stopped there."""
+
+import dataclasses
 
 import numpy as np
 import pytest
 
-from texlab.runs.column_run import ColumnRun, spectral_distances
+from tests.gui.dock_scenes import column_of
+from texlab.columns.status import details, status_parts
+from texlab.runs.column_run import ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
+from texlab_core.measures.registry import measure_all, measure_quick
+from texlab_core.measures.subject import PreparedCache, Subject
 
 
 def job():
-    pixels = np.random.default_rng(1).random((24, 20, 3), np.float32)
-    return Job(method="tiling", inputs={"exemplar": as_exemplar(pixels)}, size=(30, 32), seed=1)
+    pixels = np.random.default_rng(1).random((48, 44, 3), np.float32)
+    return Job(method="tiling", inputs={"exemplar": as_exemplar(pixels)}, size=(52, 60), seed=1)
 
 
 class Task:
     """A worker that asks for a stop at its ``stop_at``-th question."""
 
     def __init__(self, stop_at=0):
-        self.stop_at, self.asked = stop_at, 0
+        self.stop_at, self.asked, self.ways = stop_at, 0, 0
+        self.reports = []
 
     def should_stop(self):
         self.asked += 1
@@ -31,31 +37,82 @@ class Task:
         return False
 
     def progress(self, value):
-        raise AssertionError
+        self.reports.append(value)
 
     def give_way(self):
+        self.ways += 1
         return 0.0
 
 
-def test_distances_are_those_of_the_spectra():
-    result = run(job())
-    spectra = [power_spectrum(each) for each in (result.job.inputs["exemplar"].pixels, result.image)]
-    assert spectral_distances(result, lambda: False) == {
-        "spectral-distance": log_spectral_distance(*spectra),
-        "spectral-variation": total_variation(*spectra),
-    }
+def measuring(result, draft=False, cache=None):
+    cache = PreparedCache() if cache is None else cache
+    return MeasureRun(result.image, result.job.inputs["exemplar"], result, cache, draft)
 
 
-def test_a_run_can_be_stopped_at_every_question_also_after_its_last_step():
-    steps = Task()
-    run(job(), should_stop=steps.should_stop)
+def test_a_run_can_be_stopped_at_every_question():
     whole = Task()
-    finished = ColumnRun(job, AnalysisCache())(whole)
-    assert finished.metrics["spectral-distance"] > 0
-    # Two spectra in several parts each, and two distances.
-    assert whole.asked >= steps.asked + 2 * 3 + 2
+    ColumnRun(job, AnalysisCache())(whole)
     for stop_at in range(1, whole.asked + 1):
         task = Task(stop_at)
         with pytest.raises(Cancelled):
             ColumnRun(job, AnalysisCache())(task)
         assert task.asked == stop_at
+
+
+def test_a_result_is_measured_quickly_then_wholly():
+    result = run(job())
+    task = Task()
+    found = measuring(result)(task)
+    subject = Subject.of_result(result)
+    assert found.measures == measure_all(subject)
+    assert found.size == (52, 60)
+    assert [each.measures for each in task.reports] == [measure_quick(subject)]
+    assert task.ways >= task.asked > 40
+
+
+def test_a_draft_is_measured_quickly_only_and_without_a_result():
+    result = run(job())
+    task = Task()
+    draft = MeasureRun(result.image[:50], result.job.inputs["exemplar"], None, PreparedCache(), draft=True)
+    found = draft(task)
+    assert task.reports == []
+    assert found.size == (50, 60)
+    assert found.measures == measure_quick(Subject.of_images(result.job.inputs["exemplar"], result.image[:50]))
+    assert {"discriminability", "visual-difference"} < set(found.measures)
+
+
+def test_measuring_stops_at_any_question():
+    result = run(job())
+    whole = Task()
+    measuring(result)(whole)
+    for stop_at in range(1, whole.asked + 1, 7):
+        task = Task(stop_at)
+        with pytest.raises(Cancelled):
+            measuring(result)(task)
+        assert task.asked == stop_at
+
+
+def test_a_measure_that_fails_leaves_the_picture_as_it_is(monkeypatch, caplog):
+    monkeypatch.setattr("texlab_core.measures.registry.measure_quick", lambda subject: 1 / 0)
+    found = measuring(run(job()))(Task())
+    assert isinstance(found, Measured)
+    assert found.measures == {}
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_a_column_says_three_numbers_and_the_tool_tip_all():
+    image = np.zeros((30, 40, 3), np.float32)
+    numbers = {"discriminability": -3.456, "magnitude-difference": 0.02, "visual-difference": 0.25, "cuts": 5.0}
+    column = column_of(image, measures={"copied-share": 0.5}, elapsed_s=1.0)
+    assert status_parts(column)[-1] == "copied 50%"
+    column = dataclasses.replace(column, measures=numbers, measured_size=(30, 40))
+    assert status_parts(column)[-3:] == ["D -3.46", "V 0.25", "copied 50%"]
+    lines = details(column)
+    assert lines[0] == "Measured at 40 x 30:"
+    assert sorted(lines[1:]) == sorted(["D -3.46", "m 0.020", "V 0.25", "copied 50%", "cuts 5.0"])
+
+
+def test_a_draft_says_its_own_size():
+    column = column_of(np.zeros((30, 40, 3), np.float32), measures={}, draft=True, status="finished")
+    column = dataclasses.replace(column, result=None, measures={"discriminability": -2.0}, measured_size=(30, 40))
+    assert status_parts(column) == ["draft 40 x 30", "D -2.00"]

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.columns.commands import COLUMN_COMMANDS
-from texlab.columns.status import status_parts
+from texlab.columns.status import details, status_parts
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import set_tip
@@ -138,7 +138,7 @@ class ColumnView(QFrame):
         if before is None or before.picture is not scene.picture:
             self.pane.set_picture(scene.picture)
         self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
-        self.line.show_parts(status_parts(scene))
+        self.line.show_parts(status_parts(scene), details(scene))
         failed = scene.status == "failed"
         self.pane.set_note(scene.message if failed and scene.picture is None else "")
         role = "error" if failed else "muted"

@@ -8,7 +8,12 @@ from texlab.style.numbers import duration, remaining
 from texlab.widgets.status_line import SEPARATOR
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab.state.scene import ColumnScene
+
+# How many numbers are shown at once; the tool tip has all.
+MOST_NUMBERS = 3
 
 _SIGNS = {
     "idle": "",
@@ -36,7 +41,7 @@ def status_parts(scene: ColumnScene) -> list[str]:
     if scene.status == "cancelled" and scene.resumable:
         parts.append("F6 goes on")
     if scene.draft and scene.status in ("running", "finished"):
-        parts.append("draft")
+        parts.append("draft" if scene.image is None else f"draft {scene.image.shape[1]} x {scene.image.shape[0]}")
     if scene.status == "running" and scene.message:
         parts.append(scene.message)
     if scene.status == "running" and scene.elapsed_s > 1.0 and 0.02 < scene.fraction < 1:
@@ -47,26 +52,32 @@ def status_parts(scene: ColumnScene) -> list[str]:
         parts += [f"{width} x {height}", duration(scene.elapsed_s)]
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
-        numbers = {**scene.result.measures, **scene.metrics}
-        parts += [format_measure(name, numbers[name]) for name in _MEASURES if name in numbers][:MOST_NUMBERS]
+    if scene.status == "finished":
+        parts += headline(numbers_of(scene))
     return parts
 
 
-MOST_NUMBERS = 3
-
-# In the order in which they are shown, as far as a result has them.
-_MEASURES = {
-    "parameters": ("numbers", "{:.0f}"),
-    "copied-share": ("copied", "{:.0%}"),
-    "median-candidates": ("candidates", "{:.0f}"),
-    "w1-bands": ("W1 bands", "{:.3f}"),
-    "largest-pole": ("largest pole", "{:.3f}"),
-    "spectral-distance": ("spectrum", "{:.1f} dB"),
-    "spectral-variation": ("power moved", "{:.0%}"),
-}
+def numbers_of(scene: ColumnScene) -> dict[str, float]:
+    """Return the numbers about the picture by id: what was measured, and what the method says itself."""
+    said = {} if scene.result is None else scene.result.measures
+    return {**said, **scene.measures}
 
 
-def format_measure(name: str, value: float) -> str:
-    """Return a measure as it is shown under a column."""
-    title, shape = _MEASURES[name]
-    return f"{title} {shape.format(value)}"
+def headline(numbers: Mapping[str, float]) -> list[str]:
+    """Return the few numbers that are shown at once, in words."""
+    from texlab_core.measures.registry import measures, written
+
+    ids = [each.id for each in measures().values() if each.id in numbers and not each.part_of]
+    return written(numbers, ids[:MOST_NUMBERS])
+
+
+def details(scene: ColumnScene) -> list[str]:
+    """Return every number about the picture in words, with the size of the picture that they are about."""
+    from texlab_core.measures.registry import measures, written
+
+    numbers = numbers_of(scene)
+    lines = written(numbers, [name for name in measures() if name in numbers])
+    if lines and scene.measured_size is not None:
+        height, width = scene.measured_size
+        lines.insert(0, f"Measured at {width} x {height}:")
+    return lines

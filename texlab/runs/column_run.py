@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.state.scene import Frame
 from texlab.style.pictures import Picture, to_picture
-from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
@@ -17,10 +17,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from texlab_core.engine.cache import AnalysisCache
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.job import Job
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage, Step
+    from texlab_core.measures.subject import PreparedCache
     from texlab_core.warming import Need, Warmth
+
+log = logging.getLogger(__name__)
 
 MAX_FRAME_BYTES = 96 * 2**20
 
@@ -116,7 +120,7 @@ class DraftRun:
 
 @dataclass
 class ColumnRun:
-    """A request for a worker: runs ``job``; as a draft with nothing on the way and without further measures."""
+    """A request for a worker: runs ``job``; as a draft with nothing on the way."""
 
     make_job: Callable[[], Job]
     cache: AnalysisCache
@@ -155,30 +159,53 @@ class ColumnRun:
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
         result = replace(result, elapsed_s=result.elapsed_s - away)
         self.state = getattr(result.details, "state", None)
-        metrics |= {} if self.draft else spectral_distances(result, task.should_stop)
         return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
 
 
-def spectral_distances(result: Result, should_stop: Callable[[], bool]) -> dict[str, float]:
-    """Return how far the result's spectrum is from the exemplar's: dB, and share of the power moved.
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Numbers about the picture that is shown, by id, and its height and width."""
 
-    Raises ``Cancelled`` when ``should_stop``, which is asked every few milliseconds, says so.
-    """
-    from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, total_variation
+    measures: Mapping[str, float]
+    size: tuple[int, int]
 
-    exemplar = result.job.inputs.get("exemplar")
-    if not isinstance(exemplar, ImageInput) or exemplar.channels != result.image.shape[2]:
-        return {}
 
-    def look() -> None:
-        if should_stop():
-            raise Cancelled
+@dataclass(frozen=True, eq=False)
+class MeasureRun:
+    """A request for a worker: measures a picture that is shown already; of a draft only what is quick."""
 
-    first, second = power_spectrum(exemplar.pixels, look), power_spectrum(result.image, look)
-    look()
-    distance = log_spectral_distance(first, second)
-    look()
-    return {"spectral-distance": distance, "spectral-variation": total_variation(first, second)}
+    image: FloatImage
+    exemplar: ImageInput
+    result: Result | None
+    cache: PreparedCache
+    draft: bool
+
+    def __call__(self, task: TaskLike) -> Measured:
+        """Measure, reporting the quick numbers first; a measure that fails leaves the picture as it is."""
+        from texlab_core.measures.registry import measure_all, measure_quick, measures
+        from texlab_core.measures.subject import Subject
+
+        def look() -> None:
+            task.give_way()
+            if task.should_stop():
+                raise Cancelled
+
+        subject = Subject(image=self.image, exemplar=self.exemplar, cache=self.cache, look=look)
+        if self.result is not None:
+            subject = replace(Subject.of_result(self.result, self.cache), look=look)
+        size = (self.image.shape[0], self.image.shape[1])
+        found: dict[str, float] = {}
+        try:
+            found = measure_quick(subject)
+            if not self.draft:
+                task.progress(Measured(dict(found), size))
+                rest = (each.id for each in measures().values() if not (each.slow or each.live))
+                found |= measure_all(subject, rest)
+        except Cancelled:
+            raise
+        except Exception:
+            log.exception("A picture could not be measured.")
+        return Measured(found, size)
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

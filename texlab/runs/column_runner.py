@@ -4,12 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.runs.column_run import ColumnRun, Drafted, DraftRun, Finished, Loading, Progress, Waits, with_exemplar
+from texlab.runs.column_run import (
+    ColumnRun,
+    Drafted,
+    DraftRun,
+    Finished,
+    Loading,
+    Measured,
+    MeasureRun,
+    Progress,
+    Waits,
+    with_exemplar,
+)
 from texlab.runs.drafts import draft_size
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.worker import Worker
@@ -17,6 +29,7 @@ from texlab.state.scene import ColumnScene
 from texlab_core.engine.inputs import ArraysInput
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
+from texlab_core.measures.subject import PreparedCache
 from texlab_core.warming import Need, Warmth
 
 if TYPE_CHECKING:
@@ -31,11 +44,16 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Shared:
-    """What all columns share: places on the cores, analyses, and what is loaded."""
+    """What all columns share: places on the cores, analyses, what is loaded, the measured part of exemplars."""
 
     slots: Slots
     cache: AnalysisCache
     warmth: Warmth
+    prepared: PreparedCache = dataclasses.field(default_factory=PreparedCache)
+
+
+# While a control is dragged, numbers that are older than this are finished before the next picture.
+OVERDUE_S = 0.7
 
 
 class ColumnRunner(QObject):
@@ -57,6 +75,10 @@ class ColumnRunner(QObject):
         self._live = False
         self._run: ColumnRun | None = None
         self._kept: Keep | None = None
+        self._exemplar: ImageInput | None = None
+        # Whether the newest request measures the picture, and when one came to its end.
+        self._measuring = False
+        self._measured_s = 0.0
         # Method and exemplar of the newest job.
         self._origin: tuple[str, str] | None = None
         self.worker = Worker(f"column-{column.id}", shared.slots, self)
@@ -80,6 +102,11 @@ class ColumnRunner(QObject):
     def resumable(self) -> bool:
         """Whether there is a place to go on from."""
         return self._kept is not None
+
+    @property
+    def _hurries(self) -> bool:
+        """Whether measuring is to be stopped for the next picture."""
+        return self._measuring and time.monotonic() - self._measured_s < OVERDUE_S
 
     # What it is asked for.
 
@@ -109,7 +136,8 @@ class ColumnRunner(QObject):
         size = draft_size(full, self.seconds) if smaller else None
         own_draft = size is not None and method.draft is not None
         # Within a drag every picture is finished, or none would be while the events come faster than they.
-        patient, self.drafted = draft and self.drafted, draft
+        patient, self.drafted = draft and self.drafted and not self._hurries, draft
+        self._measuring, self._exemplar = False, exemplar
         self._live = draft and size is None and self.scene.status == "finished"
         self._announce(column, small=size is not None)
         make_job = partial(
@@ -143,6 +171,7 @@ class ColumnRunner(QObject):
                 "result": self.scene.result if self.drafted else None,
                 "frames": self.scene.frames if self.drafted else (),
                 "metrics": {},
+                "measures": self.scene.measures if self.drafted else {},
                 "draft": small,
                 "elapsed_s": 0.0,
             }
@@ -186,10 +215,13 @@ class ColumnRunner(QObject):
         self.changed.emit()
 
     def _started(self) -> None:
-        if not self._live:
+        if not self._live and not self._measuring:
             self._show(status="running", message="")
 
-    def _progressed(self, report: Progress | Waits) -> None:
+    def _progressed(self, report: Progress | Waits | Measured) -> None:
+        if isinstance(report, Measured):
+            self._show(measures=report.measures, measured_size=report.size)
+            return
         if isinstance(report, Waits):
             self._show(message=report.reason)
             return
@@ -204,7 +236,19 @@ class ColumnRunner(QObject):
             changes |= {"picture": report.picture, "image": report.image}
         self._show(**changes)
 
-    def _finished(self, end: Finished | Drafted) -> None:
+    def _finished(self, end: Finished | Drafted | Measured) -> None:
+        if isinstance(end, Measured):
+            self._measuring, self._measured_s = False, time.monotonic()
+            self._show(measures=end.measures, measured_size=end.size)
+            return
+        self._came(end)
+        if not self.worker.behind and self._exemplar is not None:
+            # The picture is shown first; measuring it ends when another one is asked for.
+            result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
+            self._measuring = True
+            self.worker.submit(MeasureRun(image, self._exemplar, result, self._shared.prepared, self.scene.draft))
+
+    def _came(self, end: Finished | Drafted) -> None:
         behind = self.worker.behind
         status = "waiting" if behind and not self._live else "finished"
         self._live = self._live and behind
@@ -228,7 +272,7 @@ class ColumnRunner(QObject):
             "metrics": end.metrics,
         }
         if not end.draft:
-            changes["frames"] = end.frames
+            changes |= {"frames": end.frames, "measures": {}}
         self._show(**changes)
 
     def _failed(self, sentence: str) -> None:
@@ -236,6 +280,9 @@ class ColumnRunner(QObject):
         self._show(status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
 
     def _cancelled(self) -> None:
+        if self._measuring:
+            self._measuring = False
+            return
         self._live = False
         self._show(status="cancelled", message="", draft=False)
 

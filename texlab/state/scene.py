@@ -54,6 +54,11 @@ class ColumnScene:
         Stages kept for the scrubber, in order.
     metrics
         The newest numbers of the run.
+    measures
+        Numbers about the picture by id, of the registry of measures; those of a control that is dragged may be
+        about the picture before.
+    measured_size
+        Height and width of the picture that they are about.
     elapsed_s
         Wall time of the run.
     resumable
@@ -75,6 +80,8 @@ class ColumnScene:
     draft: bool = False
     frames: tuple[Frame, ...] = ()
     metrics: Mapping[str, float] = field(default_factory=dict)
+    measures: Mapping[str, float] = field(default_factory=dict)
+    measured_size: tuple[int, int] | None = None
     elapsed_s: float = 0.0
     resumable: bool = False
     inputs: tuple[tuple[str, Input], ...] = ()

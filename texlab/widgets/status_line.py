@@ -40,17 +40,20 @@ class StatusLine(Label):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent=parent)
         self._parts: tuple[str, ...] = ()
+        self._details: tuple[str, ...] = ()
         self.setProperty("role", "muted")
         self.setWordWrap(True)
         self.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
 
-    def show_parts(self, parts: Sequence[str]) -> None:
-        """Show these parts, the most important first."""
+    def show_parts(self, parts: Sequence[str], details: Sequence[str] = ()) -> None:
+        """Show these parts, the most important first; the tool tip has them all, and the details line by line."""
+        if (tuple(parts), tuple(details)) != (self._parts, self._details):
+            self._details = tuple(details)
+            set_tip(self, "\n".join([SEPARATOR.join(parts), *self._details]))
         if tuple(parts) != self._parts:
             self._parts = tuple(parts)
-            set_tip(self, SEPARATOR.join(self._parts))
             self._fit()
 
     def sizeHint(self) -> QSize:
