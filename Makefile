@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench bar wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench bar calibrate wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -27,6 +27,10 @@ bench: .venv/.ready-bench
 # De Bonet's defaults against what they have to reach; writes the table of the help page.
 bar: .venv/.ready-run
 	@$(PY) -m texlab_core.figures.defaults --write resources/help/de-bonet.md
+
+# The tables of the help page on measures, from results that were looked at and labelled.
+calibrate: .venv/.ready-run
+	@$(PY) -m texlab_core.measures.calibrate $(or $(LABELS),../shared/labels)
 
 wheel: .venv/.ready-run
 	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist

@@ -19,7 +19,7 @@ from texlab_core.measures.registry import Measure, failures, find_measure, measu
 from texlab_core.measures.subject import Subject
 
 # What the measures are made of; every other file declares some.
-GROUND = {"registry", "subject"}
+GROUND = {"registry", "subject", "limits", "calibrate"}
 
 
 def declared(**changes: object) -> Measure:

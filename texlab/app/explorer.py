@@ -148,7 +148,7 @@ class Explorer(QObject):
     @property
     def idle(self) -> bool:
         """Whether nothing is computed and every visible dock has its answer."""
-        waiting = self.controller.busy or any(host.busy for host in self.hosts)
+        waiting = self.controller.busy or self.controller.measuring or any(host.busy for host in self.hosts)
         return not waiting and self.session.state.sample is not None
 
     # Wiring.

@@ -104,6 +104,11 @@ class ColumnRunner(QObject):
         return self._kept is not None
 
     @property
+    def measuring(self) -> bool:
+        """Whether the numbers about the picture are still to come."""
+        return self._measuring
+
+    @property
     def _hurries(self) -> bool:
         """Whether measuring is to be stopped for the next picture."""
         return self._measuring and time.monotonic() - self._measured_s < OVERDUE_S

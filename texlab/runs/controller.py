@@ -112,6 +112,11 @@ class Controller(QObject):
         running = any(runner.busy for runner in self._runners.values())
         return running or self._preparation.busy or self._errands.busy
 
+    @property
+    def measuring(self) -> bool:
+        """Whether the numbers about any column's picture are still to come."""
+        return any(runner.measuring for runner in self._runners.values())
+
     # What the user does.
 
     def edit_params(self, column_id: int, params: Params, name: str, final: bool) -> None:

@@ -1,0 +1,80 @@
+"""Numbers that follow the slider: after the picture, stopped for the next one, said with the draft's own size."""
+
+import numpy as np
+import pytest
+
+from tests.stub_method import StubParams, stub  # noqa: F401
+from texlab.runs.controller import Controller
+from texlab.state.session import Column, Sample, Session, State
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.measures.registry import measure_all
+from texlab_core.measures.subject import Subject
+
+PATIENCE_MS = 30_000
+
+
+@pytest.fixture
+def bench(qtbot, stub):  # noqa: F811
+    session = Session()
+    controller = Controller(session)
+    pixels = np.random.default_rng(2).random((48, 44, 3), np.float32)
+    session.apply(State(None, (Column(1, "stub", StubParams()),), 5, (48, 56), 2), "start")
+    session.set_sample(Sample(as_exemplar(pixels)))
+    yield session, controller
+    controller.close()
+    controller.deleteLater()
+
+
+def test_the_numbers_come_after_the_picture_and_are_the_registrys(qtbot, bench):
+    _, controller = bench
+    orders = []
+    controller.scene_changed.connect(
+        lambda scene: orders.append((scene.columns[0].result is not None, bool(scene.columns[0].measures)))
+    )
+    qtbot.waitUntil(lambda: "w1-bands" in controller.column_scene(1).measures, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not controller.busy and not controller.measuring, timeout=PATIENCE_MS)
+    column = controller.column_scene(1)
+    assert column.status == "finished"
+    assert column.measures == measure_all(Subject.of_result(column.result))
+    assert column.measured_size == (48, 56)
+    # The first picture is there before its first number.
+    assert orders.index((True, False)) < orders.index((True, True))
+
+
+def test_a_new_run_takes_the_old_numbers_away(qtbot, bench):
+    session, controller = bench
+    qtbot.waitUntil(lambda: bool(controller.column_scene(1).measures), timeout=PATIENCE_MS)
+    session.set_seed(6)
+    qtbot.waitUntil(lambda: not controller.column_scene(1).measures, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not controller.busy and not controller.measuring, timeout=PATIENCE_MS)
+    assert controller.column_scene(1).measures
+
+
+def test_measuring_is_stopped_for_the_next_picture_unless_its_numbers_are_old(qtbot, bench):
+    _, controller = bench
+    qtbot.waitUntil(lambda: bool(controller.column_scene(1).measures), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not controller.measuring, timeout=PATIENCE_MS)
+    runner = controller._runners[1]
+    runner._measuring = True
+    assert runner._hurries
+    runner._measured_s -= 1.0
+    assert not runner._hurries
+    runner._measuring = False
+    assert not runner._hurries
+
+
+def test_a_draft_is_measured_at_its_own_size(qtbot, bench):
+    _, controller = bench
+    qtbot.waitUntil(lambda: not controller.busy and not controller.measuring, timeout=PATIENCE_MS)
+    runner = controller._runners[1]
+    # The full size is said to take so long that a draft is small.
+    runner.seconds = 100.0
+    controller.edit_params(1, StubParams(level=2.0), "level", False)
+    qtbot.waitUntil(lambda: controller.column_scene(1).draft, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not controller.busy and not controller.measuring, timeout=PATIENCE_MS)
+    column = controller.column_scene(1)
+    assert column.draft
+    assert column.measured_size == column.image.shape[:2] != (48, 56)
+    assert "copied-share" in column.measures
+    # What is not quick waits for the full size.
+    assert "w1-bands" not in column.measures
