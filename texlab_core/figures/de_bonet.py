@@ -41,7 +41,12 @@ def series(name: str) -> NDArray[np.uint8]:
     """Draw the exemplar and the cells of a ready-made sweep of one knob."""
     sweep = find_sweep(name).sweep()
     exemplar = sweep.base.inputs["exemplar"]
-    tiles = [Tile(picture(cell), (cell.setting, cell.evidence)) for cell in run_sweep(sweep)]
+    tiles = [
+        Tile(
+            picture(cell), (cell.setting, ", ".join(written(cell.measures, ["copied-share", "median-candidates"])))
+        )
+        for cell in run_sweep(sweep)
+    ]
     original = Tile(exemplar.pixels, ("exemplar", title_of(exemplar.name)))  # type: ignore[union-attr]  # an image
     return page([original, *tiles[:3], Tile(None), *tiles[3:]], 4)
 
