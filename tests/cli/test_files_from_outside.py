@@ -14,10 +14,10 @@ import texlab
 import texlab_core
 from texlab.cli.commands._sources import _load_arrays
 from texlab.cli.defaults import _tables
-from texlab.cli.terminal import append_to_log
 from texlab.storage.kept_exemplar import Kept
 from texlab.storage.kept_exemplar import load as load_kept
 from texlab.storage.kept_inputs import load_input
+from texlab.storage.log import append_to_log
 from texlab.storage.paths import config_dir, log_file
 from texlab.storage.settings import Settings
 from texlab_core.batch.choices import _lines as batch_lines

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import faulthandler
 import logging
-import logging.handlers
 import sys
 import threading
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QtMsgType, Signal, qInstallMessageHandler
 
+from texlab.storage.log import LogFile
 from texlab.storage.paths import log_file
-from texlab_core.files.regular import open_appending, reason
+from texlab_core.files.regular import reason
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -28,19 +27,6 @@ _QT_LEVELS = {
 }
 
 
-class LogFile(logging.handlers.RotatingFileHandler):
-    """The log file; what cannot be written is lost without a word on the terminal."""
-
-    trouble = ""
-
-    def _open(self) -> Any:
-        return open_appending(self.baseFilename)
-
-    def handleError(self, record: logging.LogRecord) -> None:
-        """Remember what is wrong."""
-        self.trouble = reason(sys.exc_info()[1] or OSError("it cannot be written"))
-
-
 class CrashHandler(QObject):
     """Catches what nothing else caught, in slots and in threads; ``crashed(sentence)`` tells the window."""
 
@@ -53,12 +39,7 @@ class CrashHandler(QObject):
 
     def install(self) -> None:
         """Start logging to the file and take over the hooks."""
-        path = log_file()
-        with contextlib.suppress(OSError):
-            # Without its folder, every entry fails and says so.
-            path.parent.mkdir(parents=True, exist_ok=True)
-        self._handler = LogFile(path, maxBytes=1_000_000, backupCount=2, encoding="utf-8", delay=True)
-        self._handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+        self._handler = LogFile()
         log.addHandler(self._handler)
         log.setLevel(logging.INFO)
         sys.excepthook = self._caught
@@ -81,10 +62,10 @@ class CrashHandler(QObject):
             self._before[0](kind, error, trace)
             return
         log.critical("Unexpected error.", exc_info=(kind, error, trace))
-        trouble = "" if self._handler is None else self._handler.trouble
+        trouble = None if self._handler is None else self._handler.error
         where = (
-            f"the log {log_file()} cannot be written ({trouble})"
-            if trouble
+            f"the log {log_file()} cannot be written ({reason(trouble)})"
+            if trouble is not None
             else f"the details are in {log_file()}"
         )
         self.crashed.emit(

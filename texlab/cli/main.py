@@ -16,7 +16,7 @@ from texlab.cli.defaults import with_defaults
 from texlab.cli.facts import DEFAULTS, EXIT_CODES
 from texlab.cli.parser import Parser
 from texlab.cli.piping import standard_streams
-from texlab.cli.terminal import INTERRUPTED, append_to_log, complain, orderly_interrupts, quietly
+from texlab.cli.terminal import INTERRUPTED, complain, orderly_interrupts, quietly
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.version import __version__
 
@@ -143,6 +143,7 @@ def _report(error: Exception) -> int:
     """Log an unexpected error; say so in one sentence."""
     import traceback
 
+    from texlab.storage.log import append_to_log
     from texlab.storage.paths import log_file
 
     what = f"Something unexpected happened ({type(error).__name__}: {' '.join(str(error).split())})"

@@ -10,8 +10,6 @@ import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from texlab_core.files.regular import open_appending
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
@@ -40,29 +38,12 @@ def complain(sentence: str, program: str = "texlab") -> None:
             os.close(nowhere)
 
 
-def append_to_log(text: str) -> None:
-    """Write a dated entry to the log file; raises ``OSError`` when that is not possible."""
-    import datetime
-
-    from texlab.storage.paths import log_file
-    from texlab_core.version import __version__
-
-    log = log_file()
-    log.parent.mkdir(parents=True, exist_ok=True)
-    when = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    with open_appending(log) as file:
-        file.write(f"{when} texlab {__version__}\n{text}\n")
-
-
 @contextlib.contextmanager
 def logged_quietly() -> Iterator[None]:
     """Within the block, what the core logs goes to the log file, not to the terminal."""
     import logging
 
-    class LogFile(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            with contextlib.suppress(OSError):
-                append_to_log(self.format(record))
+    from texlab.storage.log import LogFile
 
     handler, core = LogFile(), logging.getLogger("texlab_core")
     core.addHandler(handler)
@@ -70,6 +51,7 @@ def logged_quietly() -> Iterator[None]:
         yield
     finally:
         core.removeHandler(handler)
+        handler.close()
 
 
 @dataclass
