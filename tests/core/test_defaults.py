@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from texlab_core.figures import defaults
 from texlab_core.figures.defaults import COLUMNS, SETTINGS, Row, homogeneous, measured, shortfalls, table
 from texlab_core.files.resources import resource
 from texlab_core.images.gallery import gallery
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pytest
 
 HELP = resource("help/de-bonet.md").read_text(encoding="utf-8")
 
@@ -36,6 +43,27 @@ def test_what_falls_short_is_said() -> None:
     assert len(found) == 4
     assert found[0] == "The median tile share of the defaults is 0.35 and may be at most 0.35."
     assert found[2] == "The median D of the defaults is -3.90 and may be at most -4.00."
+
+
+def test_the_script_writes_the_table_and_fails_below_the_bar(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = rows_of(defaults._TABLE.search(HELP)[0])
+    page, other = tmp_path / "page.md", tmp_path / "other.md"
+    page.write_text(HELP.replace("| defaults |", "| outdated |"), encoding="utf-8")
+    other.write_text("# Nothing", encoding="utf-8")
+    monkeypatch.setattr(defaults, "measured", lambda names: rows)
+    monkeypatch.setattr("sys.argv", ["defaults", "--write", str(page)])
+    assert defaults.main() == 0
+    assert defaults._TABLE.search(page.read_text(encoding="utf-8"))[0].strip() == table(rows)
+    monkeypatch.setattr("sys.argv", ["defaults", "--write", str(other)])
+    assert defaults.main() == 2
+    assert "has no place for the table" in capsys.readouterr().err
+    worse = [Row(row.setting, {**row.medians, "tile-share": 0.9}) for row in rows]
+    monkeypatch.setattr(defaults, "measured", lambda names: worse)
+    monkeypatch.setattr("sys.argv", ["defaults"])
+    assert defaults.main() == 1
+    assert "median tile share of the defaults is 0.90" in capsys.readouterr().err
 
 
 def test_homogeneous_textures() -> None:
