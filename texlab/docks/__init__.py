@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def dock_classes() -> tuple[type[Dock], ...]:
-    """Import every file of this package and return its docks, the classes with a name, by their order."""
+    """Import every file of this package and return its docks by their order: named, and no part of another."""
     from texlab.docks.base import Dock
 
     found: list[type[Dock]] = []
@@ -24,5 +24,6 @@ def dock_classes() -> tuple[type[Dock], ...]:
             and issubclass(value, Dock)
             and value.__module__ == module.__name__
             and "name" in vars(value)
+            and not value.within
         ]
     return tuple(sorted(found, key=lambda dock: (dock.order, dock.name)))

@@ -34,6 +34,8 @@ class Dock(QWidget):
     title: ClassVar[str]
     help: ClassVar[str]
     order: ClassVar[int] = 100
+    within: ClassVar[str] = ""
+    """Name of the dock of which this one is a part; "" for a tab of the window."""
     rest_ms: ClassVar[int] = 100
     """How long an answer stays before the dock is asked again."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QPainter
+from PySide6.QtGui import QPainter, QPolygonF
 
 from texlab.widgets.pane import Link, Pane
 
@@ -56,7 +56,16 @@ class Arrow:
     dashed: bool = False
 
 
-Drawn = Ring | Spot | Arrow
+@dataclass(frozen=True)
+class Path:
+    """A line through several places."""
+
+    places: tuple[tuple[float, float], ...]
+    tint: Tint
+    dashed: bool = False
+
+
+Drawn = Ring | Spot | Arrow | Path
 
 
 class PlaneLink(Link["PlanePane"]):
@@ -163,6 +172,11 @@ class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has 
         self.shown = tuple(marks)
         self._bounds = QRectF()
         for mark in self.shown:
+            if isinstance(mark, Path):
+                self._bounds = self._bounds.united(
+                    QPolygonF([QPointF(*each) for each in mark.places]).boundingRect()
+                )
+                continue
             reach = mark.radius if isinstance(mark, Ring) else 1e-6
             self._bounds = self._bounds.united(QRectF(mark.x - reach, mark.y - reach, 2 * reach, 2 * reach))
             if isinstance(mark, Arrow):
@@ -192,6 +206,9 @@ class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has 
 
 
 def _draw(painter: QPainter, mark: Drawn, pixel: float) -> None:
+    if isinstance(mark, Path):
+        painter.drawPolyline([QPointF(*each) for each in mark.places])
+        return
     here = QPointF(mark.x, mark.y)
     if isinstance(mark, Ring):
         painter.drawEllipse(here, mark.radius, mark.radius)

@@ -1,0 +1,117 @@
+"""Spots and bars at any scale: absolute responses, and kernel and footprint of the filter under the pointer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from PySide6.QtWidgets import QHBoxLayout
+
+from texlab.docks.base import Question
+from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.recent import Recent, Same
+from texlab.style.pictures import to_picture
+from texlab_core.sheets.laboratory import enlarged, gray, signed
+from texlab_core.transforms import spots_bars
+from texlab_core.transforms.luma import luma
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from texlab.state.scene import Scene
+    from texlab.style.theme import Theme
+
+_SIDE = 128
+
+
+@dataclass(frozen=True, eq=False)
+class FiltersAnswer:
+    """Responses of one scale, (8, H, W), and what is painted."""
+
+    responses: NDArray[np.float32]
+    white: float
+    shown: tuple[Shown, ...]
+    details: tuple[tuple[Shown, Shown], ...]
+
+
+@lru_cache(maxsize=64)
+def filter_pictures(number: int, scale: float) -> tuple[Shown, Shown]:
+    """Return kernel and footprint of a filter."""
+    kernel = spots_bars.scaled_kernels(scale)[number]
+    side = max(_SIDE, kernel.shape[0])
+    footprint = spots_bars.footprint(kernel, (side, side))
+    name = spots_bars.filter_name(number)
+    return (
+        Shown.of(name, enlarged(signed(kernel), _SIDE), None),
+        Shown(f"its footprint, up to {footprint.max():.2g}", to_picture(gray(footprint, float(footprint.max())))),
+    )
+
+
+class FiltersPage(LabPage):
+    """Shows the filter bank."""
+
+    name = "lab-filters"
+    title = "Filters"
+    help = "Spots and bars at any scale: absolute responses, kernels and footprints (Figs. 11.3 to 11.5)."
+    empty = "Responses appear as soon as there is an exemplar."
+
+    def build(self) -> None:
+        """Make the controls and the pictures."""
+        self._recent = Recent(8)
+        tip = "What all lengths of the filters are multiplied by; 2 to 4 find broad bars"
+        self.scale = self.add_real("scale", "scale", tip, (*spots_bars.SCALES, 0.5), self.ask)
+        self.scale.setDecimals(1)
+        self.readout = self.add_readout()
+        self.pictures = Pictures("lab-filters-responses", spots_bars.FILTERS)
+        self.details = Pictures("lab-filters-details", 2, columns=2, linked=False)
+        self.pictures.hovered.connect(self._hover)
+        self._number = 2
+        row = QHBoxLayout(self.body)
+        row.setContentsMargins(6, 0, 6, 6)
+        row.addWidget(self.pictures, 4)
+        row.addWidget(self.details, 1)
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give the panes their colours."""
+        self.pictures.set_theme(theme)
+        self.details.set_theme(theme)
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the responses of the exemplar."""
+        if scene.exemplar is None:
+            return None
+        pixels, scale, recent = scene.exemplar.pixels, self.scale.value(), self._recent
+
+        def compute(should_stop: Callable[[], bool]) -> FiltersAnswer:
+            plane = luma(pixels)
+            responses = recent.get((Same(pixels), scale), lambda: spots_bars.scaled_responses(plane, scale))
+            magnitude, white = spots_bars.strength(responses)
+            shown = tuple(
+                Shown(spots_bars.filter_name(index), to_picture(gray(each, white)), responses[index])
+                for index, each in enumerate(magnitude)
+            )
+            details = tuple(filter_pictures(index, scale) for index in range(spots_bars.FILTERS))
+            return FiltersAnswer(responses, white, shown, details)
+
+        return Question((Same(pixels), scale), compute)
+
+    def show_answer(self, answer: FiltersAnswer) -> None:
+        """Show the responses, all on one scale."""
+        self.readout.setText("")
+        self.pictures.show_pictures(answer.shown)
+        self._show_filter()
+
+    def _hover(self, index: int, row: int, column: int) -> None:
+        if row >= 0 and index != self._number:
+            self._number = index
+            self._show_filter()
+        self.readout.setText(self.pictures.told(index, row, column))
+
+    def _show_filter(self) -> None:
+        answer: FiltersAnswer | None = self.answer
+        if answer is not None:
+            self.details.show_pictures(answer.details[self._number])

@@ -1,0 +1,197 @@
+"""What the experiments of the laboratory share: pictures side by side, and a plane on which a place is dragged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from texlab.docks.frame import FramedDock
+from texlab.style.numbers import number
+from texlab.style.pictures import to_picture
+from texlab.widgets.number_box import NumberBox
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plane_pane import PlanePane
+from texlab.widgets.view_link import ViewLink
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+    from PySide6.QtCore import QEvent, QPointF
+
+    from texlab.style.pictures import Picture
+    from texlab.style.theme import Theme
+    from texlab_core.engine.steps import FloatImage
+
+
+class LabPage(FramedDock):
+    """One experiment: a dock inside the laboratory's tab."""
+
+    within: ClassVar[str] = "lab"
+    # The figures follow the pointer.
+    rest_ms: ClassVar[int] = 0
+
+    def add_real(
+        self,
+        name: str,
+        label: str,
+        tip: str,
+        limits: tuple[float, float, float],
+        changed: Callable[[], Any],
+        suffix: str = "",
+    ) -> NumberBox:
+        """Add a number with its label inside the box; ``limits`` are the lowest, the highest and the step."""
+        box = NumberBox()
+        low, high, step = limits
+        box.setDecimals(2 if step < 0.1 else 1 if step < 1 else 0)
+        box.setRange(low, high)
+        box.setSingleStep(step)
+        box.setPrefix(f"{label} ")
+        box.setSuffix(suffix)
+        box.valueChanged.connect(lambda _: changed())
+        self.add_control(box, name, label, tip)
+        return box
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """One picture with its heading.
+
+    Parameters
+    ----------
+    title
+        Heading.
+    picture
+        (H, W, 3) uint8.
+    values
+        (H, W) numbers that the pointer reads; None reads nothing.
+    unit
+        Behind the number.
+    """
+
+    title: str
+    picture: Picture
+    values: NDArray[Any] | None = None
+    unit: str = ""
+
+    @classmethod
+    def of(cls, title: str, image: FloatImage, values: NDArray[Any] | None = None, unit: str = "") -> Shown:
+        """Return a picture of an image (H, W, C) in [0, 1]."""
+        return cls(title, to_picture(image), values, unit)
+
+
+class Pictures(QWidget):
+    """Pictures with headings, side by side; ``hovered(index, row, column)``, -1 beside any."""
+
+    hovered = Signal(int, int, int)
+    clicked = Signal(int, int, int)
+
+    def __init__(self, name: str, count: int, *, columns: int = 0, linked: bool = True) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.shown: tuple[Shown, ...] = ()
+        self.panes: list[PicturePane] = []
+        self.titles: list[Label] = []
+        self._parts: list[QWidget] = []
+        link = ViewLink() if linked else None
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(4)
+        columns = columns or count
+        for index in range(count):
+            pane = PicturePane(f"{name}-{index}", f"Picture {index + 1}", link)
+            pane.hovered.connect(lambda row, column, index=index: self.hovered.emit(index, row, column))
+            pane.clicked.connect(lambda row, column, index=index: self.clicked.emit(index, row, column))
+            title = Label("")
+            part = headed(title, pane)
+            grid.addWidget(part, index // columns, index % columns)
+            grid.setColumnStretch(index % columns, 1)
+            grid.setRowStretch(index // columns, 1)
+            self.panes.append(pane)
+            self.titles.append(title)
+            self._parts.append(part)
+
+    def show_pictures(self, shown: Sequence[Shown]) -> None:
+        """Show these, and hide the panes beyond."""
+        self.shown = tuple(shown[: len(self.panes)])
+        for index, (pane, title, part) in enumerate(zip(self.panes, self.titles, self._parts, strict=True)):
+            each = self.shown[index] if index < len(self.shown) else None
+            part.setVisible(each is not None)
+            pane.set_picture(None if each is None else each.picture)
+            title.setText("" if each is None else each.title)
+            set_tip(title, title.text())
+
+    def told(self, index: int, row: int, column: int) -> str:
+        """Return the value under the pointer in words."""
+        if row < 0 or index >= len(self.shown):
+            return ""
+        each = self.shown[index]
+        if each.values is None or row >= each.values.shape[0] or column >= each.values.shape[1]:
+            return ""
+        return f"{each.title}, {column}, {row}: {number(float(each.values[row, column]))}{each.unit}"
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        for pane in self.panes:
+            pane.set_theme(theme)
+
+
+def headed(title: Label, view: QWidget) -> QWidget:
+    """Put a heading over a view; the heading takes no width of its own."""
+    title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+    part = QWidget()
+    column = QVBoxLayout(part)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(1)
+    column.addWidget(title)
+    column.addWidget(view, 1)
+    return part
+
+
+class DragPlane(PlanePane):
+    """A plane on which the left button drags a place: ``dragged(x, y, final)``; the wheel zooms as elsewhere."""
+
+    dragged = Signal(float, float, bool)
+
+    def __init__(self, name: str, label: str) -> None:
+        super().__init__(name, label)
+        self._dragging = False
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Begin to drag."""
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._dragging = True
+            self._tell(event, final=False)
+            event.accept()
+        else:
+            super().mousePressEvent(event)
+
+    def mouseMoveEvent(self, event: Any) -> None:
+        """Drag on."""
+        if self._dragging:
+            self._tell(event, final=False)
+            event.accept()
+        else:
+            super().mouseMoveEvent(event)
+
+    def mouseReleaseEvent(self, event: Any) -> None:
+        """End the drag."""
+        if self._dragging and event.button() == Qt.MouseButton.LeftButton:
+            self._dragging = False
+            self._tell(event, final=True)
+            event.accept()
+        else:
+            super().mouseReleaseEvent(event)
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Tell that the pointer has left."""
+        if not self._dragging:
+            super().leaveEvent(event)
+
+    def _tell(self, event: Any, *, final: bool) -> None:
+        place: QPointF = self.view_place(event.position().toPoint())
+        self.dragged.emit(place.x(), place.y(), final)
