@@ -44,11 +44,16 @@ def filter_pictures(number: int, scale: float) -> tuple[Shown, Shown]:
     kernel = spots_bars.scaled_kernels(scale)[number]
     side = max(_SIDE, kernel.shape[0])
     footprint = spots_bars.footprint(kernel, (side, side))
-    name = spots_bars.filter_name(number)
     return (
-        Shown.of(name, enlarged(signed(kernel), _SIDE), None),
-        Shown(f"its footprint, up to {footprint.max():.2g}", to_picture(gray(footprint, float(footprint.max())))),
+        Shown.of(short_name(number), enlarged(signed(kernel), _SIDE)),
+        Shown("footprint", to_picture(gray(footprint, float(footprint.max()))), footprint),
     )
+
+
+def short_name(number: int) -> str:
+    """Return a filter's name for a small place: bars by the angle of the waves that they answer to."""
+    spots = len(spots_bars.SPOTS)
+    return f"spot {number + 1}" if number < spots else f"bar {180 * (number - spots) // spots_bars.BARS}°"
 
 
 class FiltersPage(LabPage):
@@ -69,6 +74,7 @@ class FiltersPage(LabPage):
         self.pictures = Pictures("lab-filters-responses", spots_bars.FILTERS)
         self.details = Pictures("lab-filters-details", 2, columns=2, linked=False)
         self.pictures.hovered.connect(self._hover)
+        self.details.hovered.connect(lambda *at: self.readout.setText(self.details.told(*at)))
         self._number = 2
         row = QHBoxLayout(self.body)
         row.setContentsMargins(6, 0, 6, 6)
@@ -91,7 +97,7 @@ class FiltersPage(LabPage):
             responses = recent.get((Same(pixels), scale), lambda: spots_bars.scaled_responses(plane, scale))
             magnitude, white = spots_bars.strength(responses)
             shown = tuple(
-                Shown(spots_bars.filter_name(index), to_picture(gray(each, white)), responses[index])
+                Shown(short_name(index), to_picture(gray(each, white)), responses[index])
                 for index, each in enumerate(magnitude)
             )
             details = tuple(filter_pictures(index, scale) for index in range(spots_bars.FILTERS))

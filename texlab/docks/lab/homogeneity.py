@@ -147,9 +147,9 @@ def marks_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Pan
     trials = [homogeneity.random_marks(count, truth, rng)[1] for _ in range(_TRIALS)]
     mean = float(np.mean([homogeneity.orientation_of_marks(each).error(truth) for each in trials]))
     words = (
-        f"The mean shape of marks in random directions is a circle on the plane. Here: slant "
-        f"{found.slant:.1f}°, tilt {found.tilt:.1f}° or {found.tilt + 180:.1f}°, {found.error(truth):.1f}° off; {mean:.1f}° on average "
-        f"of {_TRIALS}."
+        "The mean shape of marks in random directions is a circle on the plane. Here: slant "
+        f"{found.slant:.1f}°, tilt {found.tilt:.1f}° or {found.tilt + 180:.1f}°, {found.error(truth):.1f}° off; "
+        f"{mean:.1f}° on average of {_TRIALS}."
     )
     return PanelAnswer((Shown.of(f"{count} marks", points_picture(places, tensors)),), words)
 

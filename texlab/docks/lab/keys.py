@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QTableWidget, QTableWidgetItem, QVBoxLayout
 from texlab.docks.base import Question
 from texlab.docks.lab.page import LabPage
 from texlab.docks.recent import Recent, Same
-from texlab.widgets.plain import Label
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.tables import make_quiet
 from texlab_core.methods.de_bonet.report import DeBonetDetails
 from texlab_core.methods.de_bonet.search import (
@@ -66,6 +66,8 @@ class KeysPage(LabPage):
         self.table.setHorizontalHeaderLabels(list(HEADS))
         self.table.setVerticalHeaderLabels(list(WAYS))
         make_quiet(self.table)
+        tip = "Keys looked at, structures compared and structures found, for the place pointed at and on average"
+        set_tip(self.table, tip)
         self.words = Label("")
         self.words.setWordWrap(True)
         layout = QVBoxLayout(self.body)
@@ -75,6 +77,7 @@ class KeysPage(LabPage):
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the counters of the chosen column's result."""
+        self.why = self.empty
         column = scene.selected
         details = None if column is None or column.result is None else column.result.details
         if not isinstance(details, DeBonetDetails) or details.sampling.grid.depth == 0:

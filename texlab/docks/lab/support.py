@@ -97,7 +97,11 @@ class SupportPage(LabPage):
         items: list[tuple[str, Any]] = [
             (names(key, kind, orientations)[0], place) for place, key in enumerate(keys)
         ]
+        first = not self.band.count()
         replace_items(self.band, items)
+        if first:
+            # An oriented band of a middle level shows a wedge.
+            self.band.setCurrentIndex(min(1 + orientations, self.band.count() - 1))
         band, recent = self.band.currentData(), self._recent
         settings = (kind, levels, orientations)
 
