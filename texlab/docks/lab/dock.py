@@ -50,7 +50,7 @@ class LabDock(Dock):
 
     name = "lab"
     title = "Laboratory"
-    help = "The textbook's experiments: filters, histograms, pyramids, search keys, shape from texture."
+    help = "The textbook's experiments: filters, equalization, pyramids, search keys, shape from texture."
     order = 95
     rest_ms = 0
 
