@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from clock import cpu, fourier_pair
 
+from tests.benchmarks.clock import cpu, fourier_pair
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.registry import find_measure, measures
 from texlab_core.measures.subject import PreparedCache, Subject
