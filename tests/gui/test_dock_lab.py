@@ -13,10 +13,12 @@ from dock_scenes import check_controls, column_of, feed, frames, hover, noise, s
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
+from tests.gui.conftest import wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.lab.dock import PAGES, LabDock
 from texlab.state.scene import Probe
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.plain import Label
 from texlab.widgets.plane_pane import Path, Spot
 from texlab_core.api import synthesize
 from texlab_core.methods.de_bonet import search
@@ -131,7 +133,7 @@ def test_representation_and_its_classes(dock: LabDock, qtbot: Any) -> None:
     page: Any = dock.page
     type_number(qtbot, page.classes, "3")
     pictures, _ = feed(dock, scene_of(exemplar=EXEMPLAR)).answer
-    assert pictures[6].title == "k-means, 3 classes"
+    assert pictures[6].title == "k-means, 3"
     assert set(np.unique(pictures[6].values)) == {0, 1, 2}
     assert page.pictures.panes[6].isVisible()
 
@@ -213,7 +215,7 @@ def test_a_click_on_the_frequency_plane_chooses_a_band(dock: LabDock, qtbot: Any
     assert "waves along 0°" in page.band.currentText()
     choose(page.kind, "laplacian")
     shown_now = feed(dock, scene_of(exemplar=EXEMPLAR)).answer.shown
-    assert shown_now[3].title == f"the band: {page.band.currentText()}"
+    assert page.band.currentText() in shown_now[3].tip
 
 
 def test_steps_down_and_up(dock: LabDock) -> None:
@@ -334,3 +336,41 @@ def test_the_sphere_has_needles(dock: LabDock, qtbot: Any) -> None:
     np.testing.assert_array_equal(wide.shown[0].picture, first.shown[0].picture)
     hover(qtbot, page.pictures.panes[1], 192, 192)
     assert "° slant" in page.readout.text()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_headings_and_tabs_are_whole_in_a_small_window(qtbot: Any, page: Any) -> None:
+    """A window of 1280 x 800 leaves the tabs below the pictures about 800 pixels."""
+    dock = shown(qtbot, LabDock(), 800, 216)
+    result = synthesize(noise(32, 32, 1), "de-bonet", size=(32, 32), alpha=0.5)
+    open_page(dock, page.name, scene_of(replace(column_of(result.image), result=result), exemplar=EXEMPLAR))
+    QApplication.processEvents()
+    assert dock.bar.sizeHint().width() <= dock.bar.width()
+    for label in dock.page.body.findChildren(Label):
+        if label.isVisible() and label.text() and not label.wordWrap():
+            assert label.fontMetrics().horizontalAdvance(label.text()) <= label.width(), label.text()
+
+
+def test_in_the_window_it_asks_in_its_thread_and_follows_a_drag(
+    qtbot: Any, open_window: Any, texture: Any
+) -> None:
+    explorer = open_window(str(texture))
+    window = explorer.window
+    window.docks["lab"].raise_()
+    dock = window.findChild(LabDock)
+    for name in ("lab-filters", "lab-plane"):
+        dock.choose(name)
+        qtbot.waitUntil(lambda: dock.page.answer is not None)
+    page: Any = dock.page
+    before = page.answer
+    qtbot.wait(20)
+    drag(qtbot, page.landscape, (0, 0), Orientation(30, 120).disc)
+    qtbot.waitUntil(lambda: page.answer.hypothesis.error(Orientation(30, 120)) < 6)
+    assert page.answer.view is before.view
+    dock.choose("lab-equalize")
+    page = dock.page
+    qtbot.waitUntil(lambda: page.answer is not None)
+    page.add_file("/no/such/picture.png")
+    qtbot.waitUntil(lambda: page.message is not None)
+    assert "/no/such/picture.png" in page.message or "picture.png" in page.message
+    wait_idle(qtbot, explorer)

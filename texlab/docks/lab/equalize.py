@@ -246,7 +246,7 @@ def equalize(two: NDArray[np.float32], one: NDArray[np.float32], ties: Ties) -> 
     result = found.remapped(ties)
     low, high = min(found.one[0], found.two[0]), max(found.one[-1], found.two[-1])
     before, after = found.distance(two), found.distance(result)
-    titles = ("image two", "image one", "two with one's histogram")
+    titles = ("image two", "image one", "the result")
     shown = [
         Shown(title, to_picture(gray(plane, float(high), float(low))), plane)
         for title, plane in zip(titles, (two, one, result), strict=True)

@@ -110,12 +110,12 @@ def pair_pictures(plane: Plane, pair: GaborPair) -> tuple[Shown, ...]:
     seen = np.clip(magnitude / (_FAINT * strong), 0, 1)
     return (
         Shown("exemplar", to_picture(gray(plane)), plane),
-        Shown("symmetric kernel", to_picture(enlarged(signed(kernel.real, limit), _KERNEL_SIDE))),
-        Shown("antisymmetric kernel", to_picture(enlarged(signed(kernel.imag, limit), _KERNEL_SIDE))),
-        Shown("symmetric answer", to_picture(signed(response.even, strong)), response.even),
-        Shown("antisymmetric answer", to_picture(signed(response.odd, strong)), response.odd),
-        Shown(f"magnitude, up to {strong:.2g}", to_picture(gray(magnitude, strong)), magnitude),
-        Shown("phase, gray where faint", to_picture(hues(phase / 2 % 180, seen)), phase, "°"),
+        Shown("even kernel", to_picture(enlarged(signed(kernel.real, limit), _KERNEL_SIDE))),
+        Shown("odd kernel", to_picture(enlarged(signed(kernel.imag, limit), _KERNEL_SIDE))),
+        Shown("even answer", to_picture(signed(response.even, strong)), response.even),
+        Shown("odd answer", to_picture(signed(response.odd, strong)), response.odd),
+        Shown("magnitude", to_picture(gray(magnitude, strong)), magnitude),
+        Shown("phase", to_picture(hues(phase / 2 % 180, seen)), phase, "°", "Local phase; gray where faint."),
     )
 
 
@@ -124,9 +124,11 @@ def local_pictures(plane: Plane, found: LocalFrequency) -> tuple[Shown, ...]:
     octaves = np.log2(found.wavelength / 4)
     return (
         Shown("exemplar", to_picture(gray(plane)), plane),
-        Shown("wavelength, 4 px black to 48 px white", to_picture(gray(octaves, 3.585)), found.wavelength, " px"),
         Shown(
-            "orientation, gray where none",
+            "wavelength", to_picture(gray(octaves, 3.585)), found.wavelength, " px", "4 px black to 48 px white."
+        ),
+        Shown(
+            "orientation",
             to_picture(hues(found.orientation, found.coherence)),
             found.orientation,
             "°",

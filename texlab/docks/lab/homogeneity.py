@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.style.pictures import to_picture
 from texlab.widgets.plain import Label
 from texlab_core.errors import Cancelled
 from texlab_core.shape import exercises, homogeneity, points
@@ -45,7 +46,7 @@ class HomogeneityPage(LabPage):
     """Shows four experiments with points on a plane, and exercise 3."""
 
     name = "lab-homogeneity"
-    title = "Shape: homogeneity"
+    title = "Homogeneity"
     help = "Points on a plane: what their density does not tell orthographically, what marks and perspective do."
 
     def build(self) -> None:
@@ -110,12 +111,13 @@ def poisson_panel(
             raise Cancelled
 
     shown = []
-    for name, orientation in (("slanted plane", truth), ("control: frontal plane", Orientation(0))):
+    for name, orientation in (("slanted plane", truth), ("frontal control", Orientation(0))):
         pattern = points.poisson(count, orientation, rng)
         values, axis = homogeneity.uniformity_landscape(pattern, _SAMPLES, at_border=at_border, look=look)
         shown.append(Shown.of(name, points_picture(pattern)))
         picture = landscape_picture(values, axis, [(orientation, TRUTH)], (0, 1))
-        shown.append(Shown.of("how uneven hypotheses leave it; ring: the truth", picture))
+        tip = "How uneven every hypothesis leaves the points, from even (black) to uneven; ring: the truth."
+        shown.append(Shown("unevenness", to_picture(picture), tip=tip))
     hypotheses = [Orientation(truth.slant, (truth.tilt + 180 * k / _TILTS) % 180) for k in range(_TILTS)]
     if at_border:
         hypotheses.append(Orientation(0))
@@ -166,7 +168,7 @@ def perspective_panel(truth: Orientation, count: int, rng: np.random.Generator) 
     )
     if fit.at_guard:
         words += " The guard before the horizon held it back."
-    return PanelAnswer((Shown.of(f"{count} points in perspective", points_picture(pattern)),), words)
+    return PanelAnswer((Shown.of(f"{count} points", points_picture(pattern)),), words)
 
 
 def counts_panel(truth: Orientation, count: int, rng: np.random.Generator) -> PanelAnswer:

@@ -71,12 +71,15 @@ class Shown:
         (H, W) numbers that the pointer reads; None reads nothing.
     unit
         Behind the number.
+    tip
+        What the picture is, in more words than the heading has room for.
     """
 
     title: str
     picture: Picture
     values: NDArray[Any] | None = None
     unit: str = ""
+    tip: str = ""
 
     @classmethod
     def of(cls, title: str, image: FloatImage, values: NDArray[Any] | None = None, unit: str = "") -> Shown:
@@ -123,7 +126,7 @@ class Pictures(QWidget):
             part.setVisible(each is not None)
             pane.set_picture(None if each is None else each.picture)
             title.setText("" if each is None else each.title)
-            set_tip(title, title.text())
+            set_tip(title, "" if each is None else each.tip or each.title)
 
     def told(self, index: int, row: int, column: int) -> str:
         """Return the value under the pointer in words."""

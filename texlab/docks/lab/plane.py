@@ -16,7 +16,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.style.colouring import SEQUENTIAL_TABLE, Scale, paint
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
-from texlab.widgets.plain import Label
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Path, Spot
 from texlab_core.engine.inputs import Crop
 from texlab_core.shape import exercises
@@ -75,7 +75,7 @@ class PlanePage(LabPage):
     """Reads slant and tilt from a texture."""
 
     name = "lab-plane"
-    title = "Shape: plane"
+    title = "Plane"
     help = "Slant and tilt of a plane of isotropic texture: landscape, rectified patch, a disc to drag (11.4.1)."
     empty = "The view appears as soon as there is an exemplar."
 
@@ -113,10 +113,12 @@ class PlanePage(LabPage):
         self.landscape.hovered.connect(self._hover)
         self.landscape.left.connect(lambda: self.readout.setText(""))
         views = QWidget()
+        self._cost_heading = Label("cost: drag the place")
+        set_tip(self._cost_heading, "Cost of every hypothesis, at slant · (cos 2 tilt, sin 2 tilt); dark is low")
         row = QHBoxLayout(views)
         row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(headed(Label("view: drag the disc's normal"), self.view), 1)
-        row.addWidget(headed(Label("cost of slant · (cos 2 tilt, sin 2 tilt): drag"), self.landscape), 1)
+        row.addWidget(headed(Label("view: drag the arrow"), self.view), 1)
+        row.addWidget(headed(self._cost_heading, self.landscape), 1)
         row.addWidget(self.pictures, 2)
         layout = QVBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
@@ -278,9 +280,9 @@ def _middle(plane: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def turned_back(view: View, hypothesis: Orientation) -> tuple[Shown, ...]:
     """Return what the hypothesis, and the truth, say the texture looks like frontally."""
-    found = [("turned back by the hypothesis", hypothesis)]
+    found = [("hypothesis, frontal", hypothesis)]
     if view.truth is not None:
-        found.append(("turned back by the truth", view.truth))
+        found.append(("truth, frontal", view.truth))
     flat = [(title, rectified(view.image, each)) for title, each in found]
     return tuple(Shown(title, to_picture(gray(plane)), plane) for title, plane in flat)
 

@@ -91,7 +91,7 @@ class RepresentationPage(LabPage):
             smoothing = max(settings[0], 4.0)
             features = recent.get(key, lambda: representation.energy_features(plane, smoothing, go_on))
             found = representation.gather(features, settings[2], np.random.default_rng(0))
-            return (*shown, Shown(f"k-means, {settings[2]} classes", GATHERED[found], found)), words
+            return (*shown, Shown(f"k-means, {settings[2]}", GATHERED[found], found)), words
 
         return Question((Same(pixels), settings), compute)
 
@@ -113,10 +113,10 @@ def stages(plane: representation.Plane, smoothing: float, threshold: float) -> t
     )
     shown = (
         Shown("exemplar", to_picture(gray(plane)), plane),
-        Shown("vertical, squared", to_picture(gray(found.vertical, white)), found.vertical),
-        Shown("horizontal, squared", to_picture(gray(found.horizontal, white)), found.horizontal),
-        Shown("vertical, local mean", to_picture(gray(found.smooth_vertical, mean)), found.smooth_vertical),
-        Shown("horizontal, local mean", to_picture(gray(found.smooth_horizontal, mean)), found.smooth_horizontal),
+        Shown("vertical²", to_picture(gray(found.vertical, white)), found.vertical),
+        Shown("horizontal²", to_picture(gray(found.horizontal, white)), found.horizontal),
+        Shown("vertical, mean", to_picture(gray(found.smooth_vertical, mean)), found.smooth_vertical),
+        Shown("horizontal, mean", to_picture(gray(found.smooth_horizontal, mean)), found.smooth_horizontal),
         Shown("classes", CLASS_COLOURS[found.classes], found.classes),
     )
     return shown, f"From black to white: {shares}."

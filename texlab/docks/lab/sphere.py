@@ -39,7 +39,7 @@ class SpherePage(LabPage):
     """Shows local shape from texture on a sphere."""
 
     name = "lab-sphere"
-    title = "Shape: sphere"
+    title = "Sphere"
     help = "A textured sphere: the orientation of each window as a needle, and the truth beside it (11.4.2)."
 
     def build(self) -> None:
@@ -104,7 +104,7 @@ def sphere_answer(texture: SphereTexture, window: int, seed: int, recent: Recent
         (
             Shown.of("view", gray(sphere.image), np.nan_to_num(sphere.slant), "° slant in truth"),
             Shown.of(
-                "estimates: projected normals, either way round",
+                "estimates",
                 needles(sphere.image, found.slant, found.tilt, known, step, FOUND),
                 found.slant,
                 "° slant",

@@ -32,7 +32,7 @@ class StepsPage(LabPage):
     """Shows one level of the analysis or of the synthesis."""
 
     name = "lab-steps"
-    title = "Pyramid steps"
+    title = "Steps"
     help = "A Laplacian pyramid step by step: smooth, reduce, expand, subtract; and back (Algorithms 11.1, 11.2)."
     empty = "The steps appear as soon as there is an exemplar."
 
@@ -85,10 +85,22 @@ def step_pictures(
         step = analysis_steps(plane, level + 1, mode)[level]
         return (
             Shown(f"level {level}", to_picture(gray(step.image)), step.image),
-            Shown("smoothed with 1 4 6 4 1", to_picture(gray(step.smooth)), step.smooth),
-            Shown(f"every second sample: level {level + 1}", to_picture(gray(step.reduced)), step.reduced),
-            Shown("expanded again", to_picture(gray(step.expanded)), step.expanded),
-            Shown("level less expanded: the band", to_picture(signed(step.band)), step.band),
+            Shown(
+                "smoothed",
+                to_picture(gray(step.smooth)),
+                step.smooth,
+                "",
+                "Smoothed with 1 4 6 4 1 along both axes.",
+            ),
+            Shown(
+                f"reduced: level {level + 1}",
+                to_picture(gray(step.reduced)),
+                step.reduced,
+                "",
+                "Every second sample.",
+            ),
+            Shown("expanded", to_picture(gray(step.expanded)), step.expanded),
+            Shown("the band", to_picture(signed(step.band)), step.band, "", "The level less what was expanded."),
         )
     steps = analysis_steps(plane, most, mode)
     back = synthesis_steps(steps, mode)[most - 1 - level]
@@ -96,5 +108,5 @@ def step_pictures(
     return (
         Shown(f"level {level + 1}, expanded", to_picture(gray(back.expanded)), back.expanded),
         Shown("+ the band", to_picture(signed(back.band)), back.band),
-        Shown(f"= level {level}, at most {off:.1g} off", to_picture(gray(back.image)), back.image),
+        Shown(f"= level {level}", to_picture(gray(back.image)), back.image, "", f"At most {off:.1g} off."),
     )

@@ -58,7 +58,7 @@ class SupportPage(LabPage):
     """Shows the annulus or wedge of a band."""
 
     name = "lab-support"
-    title = "Frequency support"
+    title = "Support"
     help = "Which ring or wedge of the frequency plane a band keeps, over the exemplar's spectrum (Fig. 11.8)."
     empty = "The frequency plane appears as soon as there is an exemplar."
 
@@ -156,10 +156,16 @@ def support_pictures(
     shown = gray(kept) if support.key.kind == "lowpass" else signed(kept)
     return SupportAnswer(
         (
-            Shown("spectrum, the band outlined", painted, spectrum, " dB"),
-            Shown(f"gain of {support.title}", to_picture(gray(support.relative)), support.gain),
+            Shown(
+                "spectrum, outlined",
+                painted,
+                spectrum,
+                " dB",
+                "The exemplar's spectrum; outlined: half the band's gain.",
+            ),
+            Shown("gain", to_picture(gray(support.relative)), support.gain, "", f"Gain of {support.title}."),
             Shown("all bands: click one", colours.astype(np.uint8), strongest),
-            Shown(f"the band: {support.title}", to_picture(shown), kept),
+            Shown("the band", to_picture(shown), kept, "", f"The exemplar's {support.title}."),
         ),
         strongest,
     )
