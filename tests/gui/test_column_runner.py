@@ -56,8 +56,8 @@ def start(runner: ColumnRunner, size: tuple[int, int] = (96, 128), **how: Any) -
 
 def finished(size: tuple[int, int], seconds: float, *, draft: bool = False) -> Finished:
     image = np.zeros((*size, 3), np.float32)
-    job = SimpleNamespace(size=size)
-    result: Any = SimpleNamespace(image=image, job=job, elapsed_s=seconds, maps={}, details=None)
+    job = SimpleNamespace(size=size, key=("made", size))
+    result: Any = SimpleNamespace(image=image, job=job, elapsed_s=seconds, maps={}, details=None, model=None)
     return Finished(result, np.zeros((*size, 3), np.uint8), (), draft)
 
 

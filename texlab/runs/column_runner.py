@@ -23,6 +23,7 @@ from texlab.runs.column_run import (
     with_exemplar,
 )
 from texlab.runs.drafts import draft_size
+from texlab.runs.kept_results import KeptResults
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.worker import Worker
 from texlab.state.scene import ColumnScene
@@ -44,12 +45,13 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Shared:
-    """What all columns share: places on the cores, analyses, what is loaded, the measured part of exemplars."""
+    """What all columns share: places, analyses, what is loaded, measured parts of exemplars, finished results."""
 
     slots: Slots
     cache: AnalysisCache
     warmth: Warmth
     prepared: PreparedCache = dataclasses.field(default_factory=PreparedCache)
+    kept: KeptResults = dataclasses.field(default_factory=KeptResults)
 
 
 # While a control is dragged, numbers that are older than this are finished before the next picture.
@@ -153,6 +155,12 @@ class ColumnRunner(QObject):
             state.seed,
             self._kept if go_on else None,
         )
+        kept = None if draft or go_on else self._shared.kept.get(key_of(column, exemplar, full, state.seed))
+        if kept is not None:
+            # The same job has the same bits: what was finished is shown, before anything else takes a place.
+            self._run = None
+            self.worker.submit(lambda task: kept, rank=Rank.DRAFT)
+            return
         loading = Loading(self._shared.warmth, Need(method.id, exemplar.channels))
         rank = Rank.DRAFT if draft else Rank.CHANGED if alone else Rank.REST
         if own_draft:
@@ -264,7 +272,8 @@ class ColumnRunner(QObject):
         drawn = math.prod(end.result.job.size)
         self.seconds = end.result.elapsed_s * max(1.0, math.prod(self._full) / drawn)
         if not end.draft:
-            self._kept = self._run.state if self._run is not None else None
+            self._kept = getattr(end.result.details, "state", None)
+            self._shared.kept.put(end.result.job.key, end)
         changes: dict[str, Any] = {
             "status": status,
             "message": "",
@@ -290,6 +299,13 @@ class ColumnRunner(QObject):
             return
         self._live = False
         self._show(status="cancelled", message="", draft=False)
+
+
+def key_of(column: Column, exemplar: ImageInput, size: tuple[int, ...], seed: int) -> tuple[object, ...]:
+    """Return the key of a column's job (:attr:`Job.key`), which is not made for that."""
+    inputs = with_exemplar(exemplar, column.inputs)
+    hashes = tuple((name, inputs[name].sha256) for name in sorted(inputs))
+    return (column.method, hashes, column.params, size, seed)
 
 
 def job_of(

@@ -94,6 +94,12 @@ class Job:
         return f"<Job: {self.brief}>"
 
     @property
+    def key(self) -> tuple[object, ...]:
+        """What the bits of the result depend on, on one machine and one set of library versions."""
+        hashes = tuple((name, self.inputs[name].sha256) for name in sorted(self.inputs))
+        return (self.method, hashes, self.params, self.size, self.seed)
+
+    @property
     def analysis_key(self) -> tuple[object, ...]:
         """What the analysis depends on."""
         hashes = tuple((name, self.inputs[name].sha256) for name in sorted(self.inputs))
