@@ -26,6 +26,7 @@ from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.figures import Figure
 from texlab_core.figures._tools import page, title_of
+from texlab_core.files.regular import read_regular
 from texlab_core.files.whole import write_whole
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.gallery import gallery
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 
 SIDE, OUTPUT = 128, 256
 SEEDS = (1, 2)
+# A help page is far shorter.
+MAX_PAGE_BYTES = 2**20
 # Textures whose central part is not the same all over, beside the class that is called so.
 _UNEVEN = frozenset(
     {
@@ -213,7 +216,7 @@ def main() -> int:
     print(table(rows))
     try:
         if args.write is not None:
-            text = args.write.read_text(encoding="utf-8")
+            text = read_regular(args.write, MAX_PAGE_BYTES).decode("utf-8")
             written, count = _TABLE.subn(lambda _: f"\n{table(rows)}\n", text)
             if count != 1:
                 raise InputError(f"{args.write}: has no place for the table of the defaults.")
