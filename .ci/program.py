@@ -54,7 +54,7 @@ def main() -> int:
     steps = [
         [*pip, "--force-reinstall", "--no-deps", str(ROOT)],
         [*pip, f"{ROOT}[program]"],
-        [str(python), "-m", "PyInstaller", *options, str(entry)],
+        [str(python), "-P", "-m", "PyInstaller", *options, str(entry)],
     ]
     for step in steps:
         code = subprocess.run(step, cwd=WORK, check=False).returncode

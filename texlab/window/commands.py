@@ -18,6 +18,7 @@ COMMANDS = (
     Command("&File", "open", "&Open image ...", "Ctrl+O", "Open an image, or a saved result with its recipe"),
     Command("&File", "paste", "&Paste image", "Ctrl+V", "Use the image on the clipboard as exemplar"),
     _OF["export"],
+    Command("&File", "batch", "Run for &many ...", "", "Run the columns' methods on many images, or a plan"),
     Command("&File", "quit", "&Quit", "Ctrl+Q", "Close the window; the session comes back", separator=True),
     Command("&Edit", "undo", "&Undo", "Ctrl+Z", "Take the last change back"),
     Command("&Edit", "redo", "&Redo", "Ctrl+Shift+Z", "Do it again"),

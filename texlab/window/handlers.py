@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
 from texlab.widgets.plain import set_tip
+from texlab.window.batch_desk import BatchDesk
 from texlab.window.toolbar import LAYOUTS
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
@@ -50,6 +51,7 @@ class Handlers(QObject):
         self._opener = opener
         self._exchange = exchange
         self._desk = desk
+        self.batches = BatchDesk(window, controller.session)
         self._turned = ""
         self._turning = QTimer(self)
         self._turning.setSingleShot(True)
@@ -62,6 +64,7 @@ class Handlers(QObject):
     def close(self) -> None:
         """Wait for nothing any more."""
         self._turning.stop()
+        self.batches.close()
 
     def _by_column(self) -> dict[str, Callable[[int], Any]]:
         """Return what every command of ``COLUMN_COMMANDS`` does to a column."""
@@ -86,6 +89,7 @@ class Handlers(QObject):
         handlers: dict[str, Any] = {
             "open": exchange.ask_open,
             "paste": exchange.paste,
+            "batch": self.batches.open,
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,

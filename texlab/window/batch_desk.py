@@ -1,0 +1,116 @@
+"""Batches from the window: one at a time, in a thread that drives processes of its own."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QDesktopServices
+
+from texlab.runs.worker import Worker
+from texlab.window.batch_dialog import BatchDialog, BatchRequest
+
+if TYPE_CHECKING:
+    from texlab.runs.worker import Task
+    from texlab.state.session import Session
+    from texlab.window.main_window import MainWindow
+    from texlab_core.batch.places import Place
+    from texlab_core.batch.running import BatchResult
+
+# Processes end at their next step; one that loads or compiles takes longer.
+PATIENCE_S = 30.0
+
+
+class BatchDesk:
+    """Opens the dialog (made when it is first wanted), and runs what it asks for."""
+
+    def __init__(self, window: MainWindow, session: Session) -> None:
+        self._window = window
+        self._session = session
+        self.dialog: BatchDialog | None = None
+        self._worker: Worker | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a batch runs."""
+        return self._worker is not None and self._worker.busy
+
+    def open(self) -> None:
+        """Show the dialog."""
+        if self.dialog is None:
+            self.dialog = BatchDialog(self._window)
+            self.dialog.asked.connect(self._run)
+            self.dialog.stopped.connect(self._stop)
+            self.dialog.page_wanted.connect(lambda page: QDesktopServices.openUrl(QUrl.fromLocalFile(page)))
+        self.dialog.show()
+        self.dialog.raise_()
+
+    def close(self) -> None:
+        """Stop what runs, and wait for its end."""
+        if self._worker is not None:
+            self._worker.close(PATIENCE_S)
+            self._worker = None
+        if self.dialog is not None:
+            self.dialog.close()
+
+    def _run(self, asked: BatchRequest) -> None:
+        dialog = self.dialog
+        assert dialog is not None
+        if self._worker is None:
+            self._worker = Worker("batch", parent=self._window)
+            self._worker.progressed.connect(dialog.show_progress)
+            self._worker.finished.connect(dialog.show_result)
+            self._worker.failed.connect(dialog.show_idle)
+            self._worker.cancelled.connect(partial(dialog.show_idle, "Stopped; run it again to go on."))
+        dialog.show_running()
+        data = None if asked.plan else plan_data(asked, self._session)
+        self._worker.submit(lambda task: run_request(task, asked, data))
+
+    def _stop(self) -> None:
+        if self._worker is not None:
+            self._worker.cancel()
+
+
+def plan_data(asked: BatchRequest, session: Session) -> dict[str, Any]:
+    """Return the plan that the fields and the columns stand for, as JSON data."""
+    chosen = session.selected_column
+    columns = session.state.columns if asked.all_columns or chosen is None else (chosen,)
+    methods: list[dict[str, Any]] = []
+    taken: dict[str, int] = {}
+    for column in columns:
+        taken[column.method] = taken.get(column.method, 0) + 1
+        number = taken[column.method]
+        name = column.method if number == 1 else f"{column.method} {number}"
+        methods.append({"method": column.method, "set": column.params.to_json(), "name": name})
+    return {
+        "inputs": list(asked.inputs),
+        "methods": methods,
+        "seeds": {"from": session.state.seed, "count": asked.seeds},
+        "sizes": list(asked.sizes),
+        "name": "Run for many",
+    }
+
+
+def run_request(task: Task, asked: BatchRequest, data: dict[str, Any] | None) -> BatchResult:
+    """Run a request in a worker's thread; raises ``InputError`` for what cannot be done."""
+    from texlab.storage.paths import config_dir
+    from texlab_core.batch.places import InProcess
+    from texlab_core.batch.plan import find_plan, plan_from_json
+    from texlab_core.batch.processes import Processes
+    from texlab_core.batch.running import run_batch
+    from texlab_core.documents.preset_store import PresetStore
+
+    presets = PresetStore(config_dir() / "presets")
+    if data is None:
+        plan = find_plan(asked.plan, presets=presets)
+    else:
+        plan = plan_from_json(data, folder=Path.home(), presets=presets)
+    place: Place = InProcess() if asked.processes == 1 else Processes(asked.processes)
+
+    def tell(progress: Any) -> None:
+        if task.due() or progress.error:
+            task.progress(progress)
+
+    return run_batch(plan, asked.out, place=place, on_progress=tell, should_stop=task.should_stop)
