@@ -134,3 +134,25 @@ def test_bad_input_is_one_sentence(texlab: Texlab, arguments: tuple[str, ...], s
     assert shown.out == ""
     assert sentence in shown.err
     assert len(shown.err.strip().splitlines()) == 1
+
+
+def test_quiet_and_pipes_work_as_with_every_command(texlab: Texlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = texlab("lab", "gabor", *ZEBRA, "--out", "a.png", "--quiet")
+    assert (shown.code, shown.out, shown.err) == (0, "", "")
+    assert json.loads(texlab("lab", "gabor", *ZEBRA, "--quiet", "--json").out)["wavelength"] == 8
+    both = texlab("lab", "gabor", *ZEBRA, "--out", "-", "--json")
+    assert both.code == 2
+    assert "both want standard output" in both.err
+
+
+def test_the_gallery_s_anisotropic_textures_are_those_that_the_help_counts() -> None:
+    from texlab_core.files.resources import resource
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.images.gallery import gallery
+    from texlab_core.shape.isotropy import DOUBTFUL, isotropy_spectrum
+    from texlab_core.transforms.luma import luma
+
+    slants = [isotropy_spectrum(luma(as_exemplar(entry.uri).pixels)).by_moments().slant for entry in gallery()]
+    doubtful = sum(slant > DOUBTFUL for slant in slants)
+    page = resource("help/shape-from-texture.md").read_text(encoding="utf-8")
+    assert f"{doubtful} of the gallery's {len(slants)} textures" in " ".join(page.split())

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 HELP = "The textbook's laboratory: filters, pyramids, histograms, search keys, shape from texture."
 ORDER = 18
+READS = ("image", "two", "one")
+WRITES = ".png"
 EXPERIMENTS = {**_lab_filters.EXPERIMENTS, **_lab_shape.EXPERIMENTS}
 
 
@@ -26,6 +28,7 @@ def configure(parser: Parser) -> None:
         each.set_defaults(experiment=experiment)
         experiment.configure(each)
         each.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+        each.add_argument("--quiet", action="store_true", help="no output but errors and --json")
 
 
 def execute(args: argparse.Namespace) -> int:
