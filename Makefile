@@ -41,12 +41,12 @@ sdist: .venv/.ready-test
 
 # The site in build/docs: the Python package from its docstrings, and the tutorials.
 docs: .venv/.ready-test
-	@$(PY) docs/build.py
+	@$(PY) .ci/build_docs.py
 
 # Versions and hashes of everything, for every system and Python that is supported; needs uv.
 lock:
 	@uv pip compile pyproject.toml --extra test --extra cluster --universal --python-version 3.11 \
-		--generate-hashes --no-emit-index-url --no-header --no-annotate --quiet --output-file requirements/lock.txt
+		--generate-hashes --no-emit-index-url --no-header --no-annotate --quiet --output-file .ci/lock.txt
 
 # Which methods give other bits here than with the versions of the lock file; BITS=FILE compares with a file.
 bits: .venv/.ready-test

@@ -2,7 +2,7 @@
 
     python3 .ci/setup_env.py run|test|bench
 
-With TEXLAB_LOCKED=1 it installs the versions of requirements/lock.txt and checks their hashes; without, or where
+With TEXLAB_LOCKED=1 it installs the versions of .ci/lock.txt and checks their hashes; without, or where
 one of them cannot be had, the newest ones that pyproject.toml allows.
 
 Standard library only, since nothing else is there yet. As root on Debian and its relatives it installs missing
@@ -21,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
-LOCK = ROOT / "requirements" / "lock.txt"
+LOCK = ROOT / ".ci" / "lock.txt"
 # How pip says that a file is not the one that was locked.
 MISMATCH = "DO NOT MATCH THE HASHES"
 EXTRAS = {"run": "", "test": "[test]", "bench": "[test,bench]"}
@@ -74,7 +74,7 @@ def main(goal: str) -> int:
         locked = [*pip, *quiet, "--require-hashes", "--requirement", str(LOCK)]
         tried = subprocess.run(locked, cwd=ROOT, stderr=subprocess.PIPE, text=True, check=False)
         if tried.returncode and MISMATCH in tried.stderr:
-            return refuse(f"{tried.stderr}A file has another hash than requirements/lock.txt says.")
+            return refuse(f"{tried.stderr}A file has another hash than .ci/lock.txt says.")
         if tried.returncode:
             print(f"{tried.stderr}The locked versions cannot be had here; the newest are taken.", file=sys.stderr)
         else:

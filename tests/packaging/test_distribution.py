@@ -104,7 +104,7 @@ def test_the_source_archive_makes_the_same_wheel(tmp_path: Path) -> None:
         names = {name.partition("/")[2] for name in tar.getnames()}
     for wanted in (
         *("LICENSE", "README.md", "CITATION.cff", "Makefile", "pyproject.toml", ".ci/setup_env.py"),
-        *("texlab/py.typed", "texlab_core/py.typed", "requirements/lock.txt", "docs/template/pyproject.toml"),
+        *("texlab/py.typed", "texlab_core/py.typed", ".ci/lock.txt", "resources/docs/template/pyproject.toml"),
         *("resources/gallery/SOURCES.tsv", "resources/icons/texlab.svg", "resources/linux/texlab.desktop"),
         *("resources/batches/de-bonet-800.json", "tests/packaging/test_distribution.py"),
     ):

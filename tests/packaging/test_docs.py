@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 ROOT = Path(__file__).resolve().parents[2]
-TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+TUTORIALS = sorted((ROOT / "resources" / "docs" / "tutorials").glob("*.md"))
 FLAGS = doctest.NORMALIZE_WHITESPACE
 
 
 @pytest.fixture(scope="module")
 def builder() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("build_docs", ROOT / "docs" / "build.py")
+    spec = importlib.util.spec_from_file_location("build_docs", ROOT / ".ci" / "build_docs.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TEMPLATE = ROOT / "docs" / "template"
+TEMPLATE = ROOT / "resources" / "docs" / "template"
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.window.generated_help import method_page
+from texlab_core.engine.registry import methods
 from texlab_core.files.resources import resource
 
 if TYPE_CHECKING:
@@ -42,11 +44,13 @@ class HelpBrowser(QTextBrowser):
         self.page = ""
 
     def show_page(self, name: str) -> bool:
-        """Show ``resources/help/NAME.md``; False when there is none."""
+        """Show ``resources/help/NAME.md``, or what a method of this name declares; False when there is neither."""
         try:
             text = resource(f"help/{name}.md").read_text(encoding="utf-8")
         except (OSError, ValueError):
-            return False
+            if name not in methods():
+                return False
+            text = method_page(methods()[name])
         self.page = name
         self.setMarkdown(text)
         self._arrange()

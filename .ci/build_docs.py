@@ -1,4 +1,4 @@
-"""Build the site of the Python package: ``python docs/build.py [FOLDER]`` (build/docs when left out).
+"""Build the site of the Python package: ``python .ci/build_docs.py [FOLDER]`` (build/docs when left out).
 
 The pages of the package come from its docstrings, by pdoc: one small library that reads numpy's style, needs no
 configuration and no other tool. The tutorials are Markdown; what they print is what a test has seen them print.
@@ -11,8 +11,8 @@ import sys
 from html import escape
 from pathlib import Path
 
-DOCS = Path(__file__).resolve().parent
-ROOT = DOCS.parent
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "resources" / "docs"
 STYLE = """
 body { font: 16px/1.55 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem; }
 pre { background: #8881; padding: .7rem; overflow-x: auto; border-radius: 4px; }
