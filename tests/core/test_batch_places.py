@@ -187,6 +187,17 @@ def test_stopping_ends_what_runs(place: Any) -> None:
         list(run_jobs(iter(slow * 50), place=place, should_stop=stop))
 
 
+def test_where_no_processes_can_be_started_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(self: object) -> None:
+        raise FileNotFoundError(2, "No such file or directory")
+
+    monkeypatch.setattr("multiprocessing.context.BaseContext.Event", fail)
+    with pytest.raises(
+        InputError, match=r"^No processes can be started here \(No such file or directory\); use only"
+    ):
+        list(run_jobs(iter(jobs()), place=Processes(2)))
+
+
 @pytest.mark.parametrize("count", [0, 257, True, 1.5])
 def test_the_number_of_processes_is_checked(count: Any) -> None:
     with pytest.raises(InputError, match="processes: must be a whole number from 1 to 256"):

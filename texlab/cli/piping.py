@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab_core.errors import InputError
@@ -14,6 +12,7 @@ from texlab_core.errors import InputError
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
+    from pathlib import Path
 
 STREAM = "-"
 MAX_BYTES = 2**30
@@ -49,6 +48,9 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
         raise InputError(
             "Standard output is a terminal, which cannot show a file; name one, or send it on with |."
         )
+    import tempfile
+    from pathlib import Path
+
     with tempfile.TemporaryDirectory(prefix="texlab-") as folder:
         if reading:
             setattr(args, reading[0], str(_take_in(Path(folder))))

@@ -7,7 +7,6 @@ import os
 import signal
 import sys
 import threading
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -54,11 +53,11 @@ def logged_quietly() -> Iterator[None]:
         handler.close()
 
 
-@dataclass
 class _Manners:
-    """Whether progress is shown."""
+    """Whether progress is shown; no dataclass, which would take longer to import than all else."""
 
-    quiet: bool = False
+    def __init__(self) -> None:
+        self.quiet = False
 
 
 _manners = _Manners()
@@ -83,12 +82,12 @@ def shows_progress() -> bool:
     return not _manners.quiet and sys.stderr is not None and sys.stderr.isatty()
 
 
-@dataclass
 class _Interruption:
     """Whether Ctrl-C was pressed, and whether the work has learnt of it."""
 
-    pressed: bool = False
-    heard: bool = False
+    def __init__(self) -> None:
+        self.pressed = False
+        self.heard = False
 
 
 _interruption = _Interruption()

@@ -25,7 +25,7 @@ import numpy as np
 
 from texlab_core.batch.orders import Order, Outcome, Workbench
 from texlab_core.batch.places import POLL_S
-from texlab_core.errors import Cancelled, ParamError
+from texlab_core.errors import Cancelled, InputError, ParamError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -79,7 +79,11 @@ class _Crew:
         self._drop = drop
         # A child of a program with threads must not be a copy of it.
         self._context = multiprocessing.get_context("spawn")
-        self._stop: Event = self._context.Event()
+        try:
+            self._stop: Event = self._context.Event()
+        except OSError as error:
+            # A bare system may lack what processes share.
+            raise InputError(f"No processes can be started here ({error.strerror}); use only one.") from error
         self._pool: ProcessPoolExecutor | None = None
 
     def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
