@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from texlab.style.numbers import duration, remaining
 from texlab.widgets.status_line import SEPARATOR
+from texlab_core.engine.sizes import size_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,8 +49,9 @@ def status_parts(scene: ColumnScene) -> list[str]:
         left = scene.elapsed_s * (1 - scene.fraction) / scene.fraction
         parts.append(f"about {remaining(left)} left" if left >= 1 else "almost done")
     if scene.status == "finished" and scene.result is not None:
-        height, width = scene.result.image.shape[:2]
-        parts += [f"{width} x {height}", duration(scene.elapsed_s)]
+        result = scene.result
+        made = result.image.shape[:2] if result.volume is None else result.volume.shape[:3]
+        parts += [size_text(made), duration(scene.elapsed_s)]
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
     if scene.status == "finished":

@@ -175,6 +175,7 @@ class ColumnRunner(QObject):
             "title": find_method(column.method).title,
             "params": column.params,
             "inputs": column.inputs,
+            "size": self._full,
         }
         if not self._live:
             changes |= {

@@ -61,6 +61,14 @@ class EditInputs:
 
 
 @dataclass(frozen=True)
+class EditSize:
+    """Give a column's result a size of its own: height and width, or depth, height and width."""
+
+    column_id: int
+    size: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class FillHoles:
     """Fill holes with a method, in the column that filled before or in a new one, and choose that column.
 
@@ -179,6 +187,7 @@ Intention = (
     EditParams
     | EditField
     | EditInputs
+    | EditSize
     | FillHoles
     | ChooseColumn
     | Point

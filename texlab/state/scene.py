@@ -65,6 +65,8 @@ class ColumnScene:
         A stopped or finished run can be gone on with, also at a larger size.
     inputs
         What the column works on besides the exemplar (a code of 69 numbers, say).
+    size
+        Height and width of its full result, or depth, height and width; empty before the first run.
     """
 
     id: int
@@ -85,6 +87,7 @@ class ColumnScene:
     elapsed_s: float = 0.0
     resumable: bool = False
     inputs: tuple[tuple[str, Input], ...] = ()
+    size: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from texlab.state.intentions import (
     EditField,
     EditInputs,
     EditParams,
+    EditSize,
     FillHoles,
     Open,
     Pin,
@@ -71,6 +72,8 @@ class Carrier:
                     controller.edit_params(column_id, column.params.replace(**{field: value}), field, final)
             case EditInputs(column_id, inputs, text, final):
                 controller.edit_inputs(column_id, inputs, text, final)
+            case EditSize(column_id, size):
+                session.set_column_size(column_id, size, merge=("size", column_id))
             case FillHoles():
                 self._fill(intention)
             case ChooseColumn(column_id):

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
-from texlab.window.mime import source_of
+from texlab.widgets.mime import source_of
+from texlab_core.engine.sizes import size_text
 from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 
 if TYPE_CHECKING:
@@ -53,13 +54,16 @@ class Exchange:
             return
         job = scene.result.job
         name = self._exemplar_name().replace("gallery:", "").replace("/", "-")
-        suggested = f"{Path(name).stem}-{job.method}-{job.size[1]}x{job.size[0]}-seed{job.seed}.png"
         kinds = {"PNG (*.png)": ".png", "TIFF (*.tif)": ".tif", "JPEG (*.jpg)": ".jpg"}
+        if scene.result.volume is not None:
+            kinds = {"TIFF stack (*.tif)": ".tif", "NumPy array (*.npy)": ".npy"}
+        usual = next(iter(kinds.values()))
+        suggested = f"{Path(name).stem}-{job.method}-{size_text(job.size, 'x')}-seed{job.seed}{usual}"
         suggested = str(Path(self._settings.text("save-folder")) / suggested)
         path, kind = QFileDialog.getSaveFileName(self._window, "Save result", suggested, ";;".join(kinds))
         if path:
             self._settings.values["save-folder"] = str(Path(path).parent)
-            target = path if Path(path).suffix else path + kinds.get(kind, ".png")
+            target = path if Path(path).suffix else path + kinds.get(kind, usual)
             if target != path and Path(target).exists():
                 # The dialog has not asked about this one.
                 self._tell(f"{target} is already there: choose it to replace it.")

@@ -20,12 +20,12 @@ from PySide6.QtWidgets import (
 
 from texlab.form.panel import ParametersView
 from texlab.style.theme import apply_theme
+from texlab.widgets.mime import source_of
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.layouts import Layouts
 from texlab.window.message_bar import MessageBar
-from texlab.window.mime import source_of
 from texlab.window.toolbar import ToolBar
 
 if TYPE_CHECKING:

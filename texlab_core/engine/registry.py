@@ -35,6 +35,8 @@ class InputSpec:
     required: bool = True
     background: float = 1.0
     """Gray level under the transparent pixels of an image: what is transparent in a mask is not marked."""
+    texture: bool = False
+    """Whether it is a texture like the exemplar, of any size: a large one is reduced when it is opened."""
     read: Callable[[Path], DataInput] | None = None
     """Reads a file of the kind ``data``; without it any JSON file is taken."""
 

@@ -200,9 +200,13 @@ register(
         synthesize=synthesize,
         inputs=(
             replace(EXEMPLAR, help="The texture at weight 0."),
-            InputSpec("second", "The texture at weight 1."),
-            InputSpec("third", "One more for the kind average, with a share of its own.", required=False),
-            InputSpec("fourth", "One more for the kind average, with a share of its own.", required=False),
+            InputSpec("second", "The texture at weight 1.", texture=True),
+            InputSpec(
+                "third", "One more for the kind average, with a share of its own.", required=False, texture=True
+            ),
+            InputSpec(
+                "fourth", "One more for the kind average, with a share of its own.", required=False, texture=True
+            ),
         ),
         rehearsals=(MixtureParams(weight=0.0, iterations=1), MixtureParams(kind="start", iterations=1)),
         fails_on=(

@@ -7,6 +7,8 @@ from typing import Any
 
 def source_of(mime: Any) -> str | bytes | None:
     """Return the path of the first local file, or the picture as PNG bytes, or None."""
+    if mime is None:
+        return None
     for url in mime.urls():
         if url.isLocalFile():
             return str(url.toLocalFile())

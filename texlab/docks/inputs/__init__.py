@@ -1,0 +1,1 @@
+"""Further images of a method: chosen, scaled and cropped like the exemplar."""
