@@ -100,7 +100,7 @@ def test_a_cross_hair_that_is_dragged_moves_the_other_slices(qtbot: Any, dock: S
     assert asked
     answer = feed(dock, scene(result))
     np.testing.assert_array_equal(answer.slices["yz"][:, 0, :], np.rint(result.volume[0, :, 11] * 255))  # type: ignore[index]
-    assert "x 11, y 2, z 5" in dock.readout.text()
+    assert "x 11, y 2, z 5" in dock.values.text()
     other = dock.panes["yz"]
     qtbot.mouseClick(other, LEFT, pos=other.place_of(8, 1))
     assert dock.place == (1, 8, 11)

@@ -18,6 +18,7 @@ from texlab.docks.recent import Same
 from texlab.docks.solids.panes import ObjectPane, SlicePane
 from texlab.state.intentions import AskOnce, EditSize, Tell
 from texlab.widgets.picture_area import CAPTION, PictureArea
+from texlab.widgets.plain import Label
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import Cancelled
 from texlab_core.solids.pictures import CUTS, Cut, Place, Turn, Walk, cross_of, middle, picture_of, slice_at
@@ -93,7 +94,10 @@ class SolidsDock(FramedDock):
             menu.addAction(text).triggered.connect(partial(self._save, what))
         self.save_button.setMenu(menu)
         self.add_control(self.save_button, "save", "Save view", "Save a picture or an animation with its recipe")
-        self.readout = self.add_readout()
+        self.values = Label()
+        self.add_control(
+            self.values, "values", "Place and colour", "Where the cross-hairs meet, and the values there"
+        )
         self.panes: dict[Cut, SlicePane] = {}
         for cut in CUTS:
             pane = SlicePane(f"solids-{cut}", NAMES[cut])
@@ -239,7 +243,7 @@ class SolidsDock(FramedDock):
         self.wrapped.set_picture(answer.wrapped)
         depth, row, column = answer.place
         values = " ".join(f"{value:.3f}" for value in answer.volume[answer.place])
-        self.readout.setText(f"x {column}, y {row}, z {depth}: {values}")
+        self.values.setText(f"x {column}, y {row}, z {depth}: {values}")
 
     def _caption(self, cut: Cut, place: Place) -> str:
         axis = {"xy": "z", "xz": "y", "yz": "x"}[cut]
