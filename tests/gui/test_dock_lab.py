@@ -16,11 +16,13 @@ from PySide6.QtWidgets import QApplication
 from tests.gui.conftest import wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.lab.dock import PAGES, LabDock
+from texlab.docks.lab.page import plane_of
 from texlab.state.scene import Probe
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.plain import Label
 from texlab.widgets.plane_pane import Path, Spot
 from texlab_core.api import synthesize
+from texlab_core.errors import Cancelled
 from texlab_core.methods.de_bonet import search
 from texlab_core.shape.orientation import Orientation
 from texlab_core.stats import equalization, representation
@@ -374,3 +376,20 @@ def test_in_the_window_it_asks_in_its_thread_and_follows_a_drag(
     qtbot.waitUntil(lambda: page.message is not None)
     assert "/no/such/picture.png" in page.message or "picture.png" in page.message
     wait_idle(qtbot, explorer)
+
+
+def test_of_a_large_exemplar_the_middle_is_shown(dock: LabDock) -> None:
+    large = np.random.default_rng(0).random((700, 900, 1)).astype(np.float32)
+    for name in ("lab-filters", "lab-steps", "lab-support"):
+        answer = open_page(dock, name, scene_of(exemplar=large)).answer
+        shown_now = answer if isinstance(answer, tuple) else answer.shown
+        assert max(max(each.picture.shape[:2]) for each in shown_now) <= 640
+    np.testing.assert_array_equal(plane_of(large), large[30:670, 130:770, 0])
+
+
+def test_long_figures_stop_when_asked(dock: LabDock) -> None:
+    for name in ("lab-filters", "lab-homogeneity"):
+        dock.choose(name)
+        question = dock.question(scene_of(exemplar=noise(72, 72, 1, seed=9)))
+        with pytest.raises(Cancelled):
+            question.compute(lambda: True)

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QHBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import enlarged, gray, signed
 from texlab_core.transforms import spots_bars
-from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -93,8 +92,9 @@ class FiltersPage(LabPage):
         pixels, scale, recent = scene.exemplar.pixels, self.scale.value(), self._recent
 
         def compute(should_stop: Callable[[], bool]) -> FiltersAnswer:
-            plane = luma(pixels)
-            responses = recent.get((Same(pixels), scale), lambda: spots_bars.scaled_responses(plane, scale))
+            plane, look = plane_of(pixels), looker(should_stop)
+            key = (Same(pixels), scale)
+            responses = recent.get(key, lambda: spots_bars.scaled_responses(plane, scale, look))
             magnitude, white = spots_bars.strength(responses)
             shown = tuple(
                 Shown(short_name(index), to_picture(gray(each, white)), responses[index])

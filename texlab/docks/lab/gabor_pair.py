@@ -8,13 +8,12 @@ import numpy as np
 from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import enlarged, gray, hues, signed
 from texlab_core.stats.local_frequency import LocalFrequency, local_frequency
 from texlab_core.transforms.gabor_pair import LONGEST, SHORTEST, GaborPair
-from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -82,8 +81,9 @@ class GaborPairPage(LabPage):
         if self.view.currentData() == "local":
 
             def analyze(should_stop: Callable[[], bool]) -> tuple[Shown, ...]:
-                plane = luma(pixels)
-                return local_pictures(plane, recent.get(Same(pixels), lambda: local_frequency(plane)))
+                plane, look = plane_of(pixels), looker(should_stop)
+                found = recent.get(Same(pixels), lambda: local_frequency(plane, look))
+                return local_pictures(plane, found)
 
             return Question(("local", Same(pixels)), analyze)
         wavelength = self.wavelength.value()
@@ -91,7 +91,7 @@ class GaborPairPage(LabPage):
         pair = GaborPair(wavelength, self.orientation.value(), sigma, self.phase.value())
 
         def compute(should_stop: Callable[[], bool]) -> tuple[Shown, ...]:
-            return pair_pictures(luma(pixels), pair)
+            return pair_pictures(plane_of(pixels), pair)
 
         return Question((Same(pixels), pair), compute)
 

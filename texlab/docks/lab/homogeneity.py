@@ -10,10 +10,9 @@ import numpy as np
 from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Pictures, Shown, looker
 from texlab.style.pictures import to_picture
 from texlab.widgets.plain import Label
-from texlab_core.errors import Cancelled
 from texlab_core.shape import exercises, homogeneity, points
 from texlab_core.shape.orientation import Orientation
 from texlab_core.shape.sheets import TRUTH, landscape_picture, points_picture
@@ -105,11 +104,7 @@ def poisson_panel(
     truth: Orientation, count: int, rng: np.random.Generator, should_stop: Callable[[], bool], *, at_border: bool
 ) -> PanelAnswer:
     """Return a slanted and a frontal pattern beside each other, with the unevenness of every hypothesis."""
-
-    def look() -> None:
-        if should_stop():
-            raise Cancelled
-
+    look = looker(should_stop)
     shown = []
     for name, orientation in (("slanted plane", truth), ("frontal control", Orientation(0))):
         pattern = points.poisson(count, orientation, rng)

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTableWidget, QTableWidgetItem, QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage
+from texlab.docks.lab.page import LabPage, looker
 from texlab.docks.recent import Recent, Same
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.tables import make_quiet
@@ -23,7 +23,6 @@ from texlab_core.methods.de_bonet.search import (
     search,
     survey,
 )
-from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -90,8 +89,9 @@ class KeysPage(LabPage):
             place = (min(probe.row >> level, height - 1), min(probe.column >> level, width - 1))
 
         def compute(should_stop: Callable[[], bool]) -> KeysAnswer:
+            look = looker(should_stop)
             key = (Same(sampling), level, components)
-            whole = recent.get(key, lambda: survey(sampling, level, components, go_on))
+            whole = recent.get(key, lambda: survey(sampling, level, components, look))
             if place is None:
                 return KeysAnswer(None, None, whole)
             index = recent.get((*key, "index"), lambda: KeyIndex(sampling, level, components))

@@ -16,6 +16,8 @@ from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import PlanePane
 from texlab.widgets.view_link import ViewLink
+from texlab_core.errors import Cancelled
+from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,6 +28,10 @@ if TYPE_CHECKING:
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
+
+
+# Figures show no more of an exemplar than this many pixels a side: they follow the pointer.
+LARGEST = 640
 
 
 class LabPage(FramedDock):
@@ -55,6 +61,23 @@ class LabPage(FramedDock):
         box.valueChanged.connect(lambda _: changed())
         self.add_control(box, name, label, tip)
         return box
+
+
+def plane_of(pixels: FloatImage) -> NDArray[Any]:
+    """Return the luma of an exemplar, (H, W) float32: of its middle where a figure would not show it whole."""
+    height, width = pixels.shape[:2]
+    top, left = max(0, (height - LARGEST) // 2), max(0, (width - LARGEST) // 2)
+    return luma(pixels[top : top + LARGEST, left : left + LARGEST])
+
+
+def looker(should_stop: Callable[[], bool]) -> Callable[[], None]:
+    """Return what long computations call between their pieces: it raises when they are to stop."""
+
+    def look() -> None:
+        if should_stop():
+            raise Cancelled
+
+    return look
 
 
 @dataclass(frozen=True, eq=False)

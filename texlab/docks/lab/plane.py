@@ -11,21 +11,19 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import DragPlane, LabPage, Pictures, Shown, headed
+from texlab.docks.lab.page import DragPlane, LabPage, Pictures, Shown, headed, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.colouring import SEQUENTIAL_TABLE, Scale, paint
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Path, Spot
-from texlab_core.engine.inputs import Crop
 from texlab_core.shape import exercises
 from texlab_core.shape.isotropy import DOUBTFUL, SMALLEST_SIDE, isotropy_spectrum, landscape
 from texlab_core.shape.orientation import MOST_SLANT, Orientation
 from texlab_core.shape.rendering import rectified, slanted_plane
 from texlab_core.shape.textures import disc_texture, noise_texture
 from texlab_core.sheets.laboratory import gray
-from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,7 +42,7 @@ SOURCES = (
     ("noise, slanted", "noise"),
     ("discs, slanted", "discs"),
 )
-_SIDE, _POINTS, _LARGEST = 256, 41, 512
+_SIDE, _POINTS = 256, 41
 _COST = Scale(0, 1)
 
 
@@ -249,7 +247,7 @@ def prepared(source: str, pixels: NDArray[np.float32] | None, truth: Orientation
     """Return a view with its landscape and estimates."""
     apparent = None
     if pixels is not None:
-        texture = _middle(luma(pixels))
+        texture = plane_of(pixels)
     else:
         maker: Any = noise_texture if source == "noise" else disc_texture
         texture = recent.get(source, lambda: maker(2 * _SIDE, np.random.default_rng(0)))
@@ -265,17 +263,6 @@ def prepared(source: str, pixels: NDArray[np.float32] | None, truth: Orientation
     painted = paint(_COST.place(shown), SEQUENTIAL_TABLE)
     search, moments = spectrum.by_search(), spectrum.by_moments()
     return View(image, to_picture(gray(image)), costs, painted, search, moments, truth, apparent)
-
-
-def _middle(plane: NDArray[np.float32]) -> NDArray[np.float32]:
-    height, width = plane.shape
-    crop = Crop(
-        max(0, (height - _LARGEST) // 2),
-        max(0, (width - _LARGEST) // 2),
-        min(height, _LARGEST),
-        min(width, _LARGEST),
-    )
-    return np.ascontiguousarray(plane[crop.top : crop.top + crop.height, crop.left : crop.left + crop.width])
 
 
 def turned_back(view: View, hypothesis: Orientation) -> tuple[Shown, ...]:

@@ -8,14 +8,12 @@ import numpy as np
 from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab.widgets.plain import Label
 from texlab_core.sheets.laboratory import gray
 from texlab_core.stats import representation
-from texlab_core.transforms.luma import luma
-from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,13 +81,13 @@ class RepresentationPage(LabPage):
         settings = (self.smoothing.value(), self.threshold.value(), self.classes.value())
 
         def compute(should_stop: Callable[[], bool]) -> tuple[tuple[Shown, ...], str]:
-            plane = luma(pixels)
+            plane, look = plane_of(pixels), looker(should_stop)
             shown, words = stages(plane, settings[0], settings[1])
             if settings[2] < 2:
                 return shown, words
             key = (Same(pixels), settings[0])
             smoothing = max(settings[0], 4.0)
-            features = recent.get(key, lambda: representation.energy_features(plane, smoothing, go_on))
+            features = recent.get(key, lambda: representation.energy_features(plane, smoothing, look))
             found = representation.gather(features, settings[2], np.random.default_rng(0))
             return (*shown, Shown(f"k-means, {settings[2]}", GATHERED[found], found)), words
 

@@ -8,12 +8,11 @@ import numpy as np
 from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LARGEST, LabPage, Pictures, Shown, plane_of
 from texlab.docks.recent import Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import gray, signed
 from texlab_core.transforms.gaussian import Expansion, max_levels
-from texlab_core.transforms.luma import luma
 from texlab_core.transforms.pyramid_steps import analysis_steps, synthesis_steps
 
 if TYPE_CHECKING:
@@ -59,7 +58,7 @@ class StepsPage(LabPage):
         if scene.exemplar is None:
             return None
         pixels = scene.exemplar.pixels
-        most = max_levels(pixels.shape)
+        most = max_levels([min(side, LARGEST) for side in pixels.shape[:2]])
         if most < 1:
             self.why = "The exemplar is too small for a pyramid."
             return None
@@ -67,7 +66,7 @@ class StepsPage(LabPage):
         mode: Expansion = self.mode.currentData()
 
         def compute(should_stop: Callable[[], bool]) -> tuple[Shown, ...]:
-            return step_pictures(luma(pixels), level, way, mode, most)
+            return step_pictures(plane_of(pixels), level, way, mode, most)
 
         return Question((Same(pixels), level, way, mode), compute)
 

@@ -10,14 +10,13 @@ from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.frame import replace_items
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Pictures, Shown, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import gray, signed
 from texlab_core.stats import frequency_support
 from texlab_core.stats.bands import band_keys, most_levels, names, split
 from texlab_core.stats.spectrum import power_spectrum
-from texlab_core.transforms.luma import luma
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,9 +136,9 @@ def support_pictures(
     """Return the exemplar's spectrum with the band's outline, its gain, all bands, and the band itself."""
     import cv2
 
-    support = found[band]
+    support, plane = found[band], plane_of(pixels)
     height, width = support.gain.shape
-    spectrum = power_spectrum(pixels).log_picture()
+    spectrum = power_spectrum(plane[..., None]).log_picture()
     if spectrum.shape != (height, width):
         spectrum = np.asarray(cv2.resize(spectrum, (width, height), interpolation=cv2.INTER_AREA), np.float32)
     painted = to_picture(gray(spectrum, max(float(np.percentile(spectrum, 99.9)), 1.0)))
@@ -149,7 +148,6 @@ def support_pictures(
     relative = np.stack([each.relative for each in found])
     strongest = relative.argmax(axis=0)
     colours = _COLOURS[strongest % len(_COLOURS)] * (0.25 + 0.75 * relative.max(axis=0))[..., None]
-    plane = luma(pixels)
     kind, levels, orientations = settings
     bands = split(plane, kind, levels, orientations)
     kept = bands[min(band, len(bands) - 1)].plane
