@@ -208,9 +208,15 @@ def comparison_sheet(
     uint8 array
         (H, W, 3).
     """
+    tiles = comparison_tiles(exemplar, compared)
+    return contact_sheet(tiles, columns or series_columns(len(tiles)), largest=largest)
+
+
+def comparison_tiles(exemplar: ImageInput, compared: Sequence[Compared]) -> list[Tile]:
+    """Return the pictures of a comparison with their captions, the exemplar first."""
     height, width = exemplar.size
     tiles = [Tile(exemplar.pixels, ("Exemplar", exemplar.name, f"{width} x {height}"))]
     tiles += [
         Tile(None if each.result is None else each.result.image, each.caption(), each.error) for each in compared
     ]
-    return contact_sheet(tiles, columns or series_columns(len(tiles)), largest=largest)
+    return tiles

@@ -109,7 +109,7 @@ def contact_sheet(
 
     sides = [max(tile.image.shape[:2]) for tile in tiles if tile.image is not None]
     scale = min(1.0, largest / max(sides, default=1))
-    pictures = [None if tile.image is None else _picture(tile.image, scale) for tile in tiles]
+    pictures = [None if tile.image is None else _rgb(picture_bytes(tile.image, scale)) for tile in tiles]
     plan = _plan(tiles, pictures, columns, title, column_heads, row_heads)
     sheet = Image.new("RGB", plan.size, _PAPER)
     draw = ImageDraw.Draw(sheet)
@@ -238,7 +238,21 @@ def font_size(side: int) -> int:
     return round(min(18, max(12, 9 + side / 56)))
 
 
-def _picture(image: FloatImage, scale: float) -> NDArray[np.uint8]:
+def picture_bytes(image: FloatImage, scale: float = 1.0) -> NDArray[np.uint8]:
+    """Return a picture as it is shown.
+
+    Parameters
+    ----------
+    image
+        (H, W, C) float32 in [0, 1], C of 1 or 3.
+    scale
+        Factor of both sides; below 1 by area averaging.
+
+    Returns
+    -------
+    uint8 array
+        (H', W', C).
+    """
     height, width, channels = image.shape
     shown: NDArray[Any] = image
     if scale < 1:
@@ -246,5 +260,9 @@ def _picture(image: FloatImage, scale: float) -> NDArray[np.uint8]:
 
         size = (max(1, round(width * scale)), max(1, round(height * scale)))
         shown = cv2.resize(image, size, interpolation=cv2.INTER_AREA).reshape(size[1], size[0], channels)
-    rounded = (np.clip(shown, 0, 1) * 255 + 0.5).astype(np.uint8)
-    return rounded if channels == 3 else np.repeat(rounded, 3, axis=2)
+    rounded: NDArray[np.uint8] = (np.clip(shown, 0, 1) * 255 + 0.5).astype(np.uint8)
+    return rounded
+
+
+def _rgb(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return picture if picture.shape[2] == 3 else np.repeat(picture, 3, axis=2)

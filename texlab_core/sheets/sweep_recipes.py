@@ -6,7 +6,7 @@ import dataclasses
 import difflib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
 from texlab_core.engine.job import Job, check_seed
@@ -18,6 +18,7 @@ from texlab_core.files import strict_json
 from texlab_core.files.regular import open_regular, reason
 from texlab_core.files.resources import resource
 from texlab_core.images.formats.png_text import SIGNATURE, read_text
+from texlab_core.sheets.figure import FIGURE_SUFFIXES
 from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 FORMAT = "texlab-sweep"
 VERSION = 1
 TEXT_KEY = "texlab-sweep"
+_FIGURE_HEAD = 4 * strict_json.MAX_BYTES
 _KEYS = (
     "format",
     "version",
@@ -318,7 +320,7 @@ def find_sweep(source: str) -> SweepRecipe:
     if path.suffix.lower() == ".json":
         what = f"the sweep {path.name}"
         return sweep_recipe_from_json(strict_json.load(path, what=what, error=RecipeError), what=what)
-    if path.suffix.lower() == ".png":
+    if path.suffix.lower() in (".png", *FIGURE_SUFFIXES):
         return _from_sheet(path)
     known = {each.name: each for each in bundled_sweeps()}
     if source in known:
@@ -331,8 +333,7 @@ def find_sweep(source: str) -> SweepRecipe:
 def _from_sheet(path: Path) -> SweepRecipe:
     try:
         with open_regular(path) as file:
-            is_png = file.read(len(SIGNATURE)) == SIGNATURE
-            text = read_text(file, TEXT_KEY, strict_json.MAX_BYTES) if is_png else None
+            text = _carried(file)
     except OSError as bad:
         raise RecipeError(f"{path}: cannot be opened ({reason(bad)}).") from bad
     except ValueError as bad:
@@ -341,3 +342,15 @@ def _from_sheet(path: Path) -> SweepRecipe:
         raise RecipeError(f"{path.name} is no contact sheet of a sweep: it carries no recipe.")
     what = f"the sheet {path.name}"
     return sweep_recipe_from_json(strict_json.loads(text, what=what, error=RecipeError), what=what)
+
+
+def _carried(file: BinaryIO) -> str | bytes | None:
+    """Return the recipe in a sheet; it stands at the beginning of a figure."""
+    head = file.read(_FIGURE_HEAD)
+    if head.startswith(SIGNATURE):
+        file.seek(len(SIGNATURE))
+        return read_text(file, TEXT_KEY, strict_json.MAX_BYTES)
+    from texlab_core.sheets.figure_pdf import attached_text
+    from texlab_core.sheets.figure_svg import carried_text
+
+    return attached_text(head) if head.startswith(b"%PDF-") else carried_text(head)

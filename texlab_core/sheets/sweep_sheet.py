@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_text
+from texlab_core.errors import ParamError
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
+from texlab_core.sheets.figure import Figure, encode_figure, figure_page, is_figure
 from texlab_core.sheets.sweep import show
 
 if TYPE_CHECKING:
@@ -44,18 +46,33 @@ def sweep_sheet(
         (H, W, 3).
     """
     is_grid = len(sweep.axes) == 2
-    finished = {cell.index: cell for cell in cells}
-    tiles = [_tile(finished.get(index), is_grid) for index in range(len(sweep.jobs))]
+    tiles = _tiles(sweep, cells)
     across = len(sweep.axes[0].values) if is_grid else columns or series_columns(len(tiles))
-    heads = [[f"{axis.name.replace('_', ' ')} {show(value)}" for value in axis.values] for axis in sweep.axes]
+    heads = _heads(sweep)
     return contact_sheet(
         tiles,
         across,
         title=sweep_title(sweep),
-        column_heads=heads[0] if is_grid else (),
-        row_heads=heads[1] if is_grid else (),
+        column_heads=heads[0],
+        row_heads=heads[1],
         largest=largest,
     )
+
+
+def _tiles(sweep: Sweep, cells: Sequence[Cell]) -> list[Tile]:
+    """Return the picture or the reason of every place."""
+    finished = {cell.index: cell for cell in cells}
+    return [_tile(finished.get(index), len(sweep.axes) == 2) for index in range(len(sweep.jobs))]
+
+
+def _heads(sweep: Sweep) -> tuple[list[str], list[str]]:
+    """Return what stands above the columns and left of the rows of a grid; a series has neither."""
+    if len(sweep.axes) < 2:
+        return [], []
+    across, down = (
+        [f"{axis.name.replace('_', ' ')} {show(value)}" for value in axis.values] for axis in sweep.axes
+    )
+    return across, down
 
 
 def _tile(cell: Cell | None, is_grid: bool) -> Tile:
@@ -75,17 +92,20 @@ def write_sheet(
     note: str = "",
     columns: int | None = None,
     largest: int = LARGEST_CELL,
+    look: Figure | None = None,
 ) -> None:
-    """Write the contact sheet as a PNG that carries the sweep, so that it can be run again.
+    """Write the contact sheet, which carries the sweep, so that it can be run again.
 
     Parameters
     ----------
     path
-        Ends in .png.
+        Ends in .png, or in .pdf or .svg for a figure.
     sweep, cells, columns, largest
         As for :func:`sweep_sheet`.
     name, note
         Of the recipe that the sheet carries.
+    look
+        Of a figure.
 
     Raises
     ------
@@ -97,17 +117,43 @@ def write_sheet(
     from texlab_core.images.formats.writing import encode_png
     from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
-    across = sheet_columns(sweep) if columns is None else columns
-    check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
-    sheet = sweep_sheet(sweep, cells, columns=across, largest=largest)
+    across = sheet_columns(sweep, columns)
     recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
     text = json.dumps(recipe, separators=(",", ":"), allow_nan=False)
+    if is_figure(path):
+        heads = _heads(sweep)
+        page = figure_page(
+            _tiles(sweep, cells),
+            look or Figure(),
+            columns=across,
+            title=sweep_title(sweep),
+            column_heads=heads[0],
+            row_heads=heads[1],
+            texts={TEXT_KEY: text},
+        )
+        write_whole(path, encode_figure(path, page))
+        return
+    check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
+    sheet = sweep_sheet(sweep, cells, columns=across, largest=largest)
     write_whole(path, encode_png(sheet, {TEXT_KEY: text}))
 
 
-def sheet_columns(sweep: Sweep) -> int:
-    """Return how many cells stand in a row: the values of the first of two knobs, or what suits a series."""
-    return len(sweep.axes[0].values) if len(sweep.axes) == 2 else series_columns(len(sweep.jobs))
+def sheet_columns(sweep: Sweep, wanted: int | None = None) -> int:
+    """Return how many cells stand in a row.
+
+    The values of the first of two knobs; in a series as many as wanted, or what suits it.
+
+    Raises
+    ------
+    ParamError
+        When another number is wanted of two knobs.
+    """
+    if len(sweep.axes) < 2:
+        return min(wanted or series_columns(len(sweep.jobs)), len(sweep.jobs))
+    own = len(sweep.axes[0].values)
+    if wanted not in (None, own):
+        raise ParamError("columns", f"{own}, the values of {sweep.axes[0].name}", wanted)
+    return own
 
 
 def sweep_title(sweep: Sweep) -> tuple[str, str]:

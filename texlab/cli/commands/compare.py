@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
 from texlab.cli.commands._options import (
     output_file,
     parse_number,
@@ -41,7 +42,9 @@ def configure(parser: Parser) -> None:
     parser.epilog = NOTES
     parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar")
     parser.add_argument("--methods", metavar="A,B,C", help="ids from texlab methods, separated by commas")
-    parser.add_argument("--out", required=True, metavar="SHEET.png", help="file to write")
+    parser.add_argument(
+        "--out", required=True, metavar=SHEET, help="file to write; .pdf and .svg are figures for print"
+    )
     parser.add_argument("--same-phase", action="store_true", help="one seed, and so one random phase, for all")
     parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="of the first method; the others count on")
@@ -50,6 +53,7 @@ def configure(parser: Parser) -> None:
         "--set", action="append", default=[], metavar="METHOD.NAME=VALUE", help="set one parameter of one method"
     )
     add_scale_options(parser)
+    add_figure_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
 
@@ -64,14 +68,21 @@ def execute(args: argparse.Namespace) -> int:
         raise ParamError("columns", "a whole number from 1", columns)
     reading = parse_reading(args)
     out = output_file(args.out)
-    if out.suffix.lower() != ".png":
-        raise ParamError("out", "a file name that ends in .png", args.out)
+    look = parse_figure(args, columns)
     refuse_overwriting(out, args.image)
 
     from texlab_core.files.whole import write_whole
     from texlab_core.images.formats.writing import encode_png
-    from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT, compare, comparison_sheet, plan
+    from texlab_core.sheets.comparison import (
+        FIG_8,
+        FIRST_SIGHT,
+        compare,
+        comparison_sheet,
+        comparison_tiles,
+        plan,
+    )
     from texlab_core.sheets.contact_sheet import check_sheet, series_columns
+    from texlab_core.sheets.figure import encode_figure, figure_page
 
     if args.methods is None:
         names: Sequence[str] = FIG_8 if args.same_phase else FIRST_SIGHT
@@ -81,10 +92,14 @@ def execute(args: argparse.Namespace) -> int:
     exemplar = reading.read(args.image)
     jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase, params=params)
     cells = len(jobs) + 1
-    check_sheet(cells, columns or series_columns(cells), jobs[0].picture_size)
+    if look is None:
+        check_sheet(cells, columns or series_columns(cells), jobs[0].picture_size)
     with share_bar(f"{len(jobs)} methods") as show:
         compared = compare(jobs, on_progress=show, should_stop=interrupted)
-    write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))
+    if look is None:
+        write_whole(out, encode_png(comparison_sheet(exemplar, compared, columns=columns)))
+    else:
+        write_whole(out, encode_figure(out, figure_page(comparison_tiles(exemplar, compared), look)))
     report(compared, out, as_json=args.json)
     return 0
 

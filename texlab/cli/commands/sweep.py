@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
 from texlab.cli.commands._options import (
     output_file,
     parse_number,
@@ -53,7 +54,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument(
         "--vary", action="append", default=[], metavar="NAME=FROM:TO:COUNT[:log]", help="see below"
     )
-    parser.add_argument("--out", required=True, metavar="SHEET.png", help="file to write; carries the recipe")
+    parser.add_argument("--out", required=True, metavar=SHEET, help="file to write; carries the recipe")
     parser.add_argument("--recipe", metavar="NAME|FILE", help="start from a ready-made sweep, a file or a sheet")
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from the parameters of a preset")
     parser.add_argument("--size", metavar="WxH|WxHxD", help="of each result (default: the exemplar's)")
@@ -61,6 +62,8 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
     add_scale_options(parser)
     add_input_options(parser)
+    add_figure_options(parser)
+    parser.add_argument("--columns", metavar="N", help="pictures in a row of a series")
     parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
@@ -74,8 +77,10 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.sheets.sweep_sheet import sheet_columns, write_sheet
 
     out = output_file(args.out)
-    if out.suffix.lower() != ".png":
-        raise ParamError("out", "a file name that ends in .png", args.out)
+    look = parse_figure(args)
+    columns = None if args.columns is None else parse_number("columns", args.columns, int)
+    if columns is not None and columns < 1:
+        raise ParamError("columns", "a whole number from 1", columns)
     largest = parse_number("cell", args.cell, int)
     if not 64 <= largest <= 512:
         raise ParamError("cell", "a whole number from 64 to 512", largest)
@@ -86,10 +91,12 @@ def execute(args: argparse.Namespace) -> int:
     for source in sources:
         refuse_overwriting(out, source)
     sweep = recipe.sweep(exemplar, load_others(others, find_method(recipe.method)))
-    check_sheet(len(sweep.jobs), sheet_columns(sweep), sweep.base.picture_size, largest)
+    across = sheet_columns(sweep, columns)
+    if look is None:
+        check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
     with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
         cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
-    write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, largest=largest)
+    write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, columns=across, largest=largest, look=look)
     report(sweep, cells, str(out), as_json=args.json)
     return 0
 
