@@ -8,7 +8,7 @@ import numpy as np
 
 from texlab_core.errors import InputError
 from texlab_core.measures.registry import Measure, register
-from texlab_core.work.tasks import finish
+from texlab_core.work.tasks import finish, row_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -46,7 +46,7 @@ def continuous_share_steps(source_map: NDArray[np.int32]) -> Generator[float, No
     source = _checked(source_map)
     height, width = source.shape[:2]
     pairs = count = filled = 0
-    for first, last in _row_blocks(height, width):
+    for first, last in row_bounds((height, width), _PIXELS_AT_ONCE):
         there = source[first : last + 1, :, 0] >= 0
         own = there[: last - first]
         filled += int(np.count_nonzero(own))
@@ -83,7 +83,7 @@ def copied_regions_steps(
 
     source = _checked(source_map)
     height, width = source.shape[:2]
-    blocks = _row_blocks(height, width)
+    blocks = row_bounds((height, width), _PIXELS_AT_ONCE)
     parent = np.empty(height * width, np.int32)
     for done, (first, last) in enumerate(blocks):
         join_rows(source, parent, first, last)
@@ -134,11 +134,6 @@ def source_repetition(source_map: NDArray[np.int32]) -> float | None:
     used = np.zeros((int(rows.max()) + 1, int(columns.max()) + 1), bool)
     used[rows[there], columns[there]] = True
     return int(np.count_nonzero(there)) / int(np.count_nonzero(used))
-
-
-def _row_blocks(height: int, width: int) -> list[tuple[int, int]]:
-    rows = max(1, _PIXELS_AT_ONCE // max(1, width))
-    return [(first, min(height, first + rows)) for first in range(0, height, rows)]
 
 
 def _checked(source_map: NDArray[np.int32]) -> NDArray[np.int32]:

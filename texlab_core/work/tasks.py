@@ -93,6 +93,11 @@ def row_blocks(shape: Sequence[int], samples: int = 2**19) -> list[slice]:
     return [slice(start, min(start + rows, shape[0])) for start in range(0, shape[0], rows)]
 
 
+def row_bounds(shape: Sequence[int], samples: int = 2**19) -> list[tuple[int, int]]:
+    """Return (first, last) of the slices of :func:`row_blocks`, for kernels."""
+    return [(rows.start, rows.stop) for rows in row_blocks(shape, samples)]
+
+
 class Pace:
     """Turns work into steps: one for every ``stride`` units of work, and one whenever a task waits for threads."""
 

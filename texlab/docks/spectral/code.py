@@ -116,16 +116,12 @@ class CodeAnswer:
 def encoded(image: FloatImage, measure: BandwidthMeasure, axes: BandwidthAxes = "uv") -> MsgCode:
     """Return the code of an image, (H, W, C) float32."""
     from texlab_core.methods.spectral.encoding import encode
+    from texlab_core.work.tasks import finish
     from texlab_core.work.threads import use_workers
 
-    steps = encode(image, measure, axes)
     with use_workers(1):
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                code: MsgCode = end.value[0]
-                return code
+        code, _ = finish(encode(image, measure, axes))
+        return code
 
 
 def given_code(column: ColumnScene) -> DataInput | None:

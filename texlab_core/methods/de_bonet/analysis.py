@@ -11,10 +11,10 @@ from texlab_core.methods.de_bonet.channels import Channels, planes_of
 from texlab_core.methods.de_bonet.features import FeatureKind, FilterSet, feature_list
 from texlab_core.methods.de_bonet.fitting import ExemplarBorder, Fitting, choose_depth, fit
 from texlab_core.methods.de_bonet.seams import Seams
-from texlab_core.work.tasks import through
+from texlab_core.work.tasks import row_bounds, through
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Generator
 
     from numpy.typing import NDArray
 
@@ -29,7 +29,7 @@ Normalization = Literal["variance", "level", "range", "sum", "printed"]
 _CONSTANT = 1e-6
 # A printed Z below this is rounding: the feature sums to nothing.
 _SMALLEST_SUM = 1e-12
-_PIXELS_AT_ONCE = 2**17
+PIXELS_AT_ONCE = 2**17
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -194,13 +194,6 @@ def analyze_steps(
     )
 
 
-def row_blocks(height: int, width: int) -> Iterator[tuple[int, int]]:
-    """Split rows into blocks of a few milliseconds of work."""
-    rows = max(1, _PIXELS_AT_ONCE // width)
-    for first in range(0, height, rows):
-        yield first, min(height, first + rows)
-
-
 def _split(
     gaussian: NDArray[np.float32], border: Border
 ) -> Generator[None, None, tuple[NDArray[np.float32], NDArray[np.float64]]]:
@@ -213,7 +206,7 @@ def _split(
     expanded = np.empty_like(gaussian)
     framed = np.empty((width // 2 + 2, channels), np.float32)
     band = np.empty(gaussian.shape, np.float64)
-    for first, last in row_blocks(height, width * channels):
+    for first, last in row_bounds((height, width * channels), PIXELS_AT_ONCE):
         expand_rows(coarser, border == "periodic", framed, expanded, first, last)
         band[first:last] = gaussian[first:last]
         band[first:last] -= expanded[first:last]
@@ -275,7 +268,7 @@ def finish_level(
         coordinates=np.empty((height * width, 2), np.int32),
     )
     row_part, column_part = grid.parts(i)
-    for first, last in row_blocks(height, width * max(1, columns)):
+    for first, last in row_bounds((height, width * max(1, columns)), PIXELS_AT_ONCE):
         order = row_part[first:last, None] + column_part
         level.band[order] = band[first:last]
         level.coordinates[order, 0] = np.arange(first, last, dtype=np.int32)[:, None]
@@ -286,7 +279,7 @@ def finish_level(
     if columns:
         table = np.full(1 << (2 * height * width - 1).bit_length(), -1, np.int32)
         words, found = level.features.view(np.uint32), 0
-        for first, last in row_blocks(height * width, columns):
+        for first, last in row_bounds((height * width, columns), PIXELS_AT_ONCE):
             found = classify_rows(words, table, level.classes, found, first, last)
             yield
     for array in (level.band, level.features, level.classes, level.scale, level.coordinates):

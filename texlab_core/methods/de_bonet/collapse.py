@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.de_bonet.analysis import row_blocks
+from texlab_core.methods.de_bonet.analysis import PIXELS_AT_ONCE
+from texlab_core.work.tasks import row_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +52,7 @@ def collapse_steps(
     out = np.empty((height, width, channels), np.float32)
     framed = np.empty((width // 2 + 2, channels), np.float32)
     row_part, column_part = grid.parts(level)
-    for first, last in row_blocks(height, width * channels):
+    for first, last in row_bounds((height, width * channels), PIXELS_AT_ONCE):
         collapse_rows(
             coarser, periodic, analysis.levels[level].band, source, row_part, column_part, framed, out, first, last
         )

@@ -8,10 +8,10 @@ import numpy as np
 
 from texlab_core.engine.steps import Step
 from texlab_core.errors import InputError
-from texlab_core.methods.de_bonet.analysis import row_blocks
+from texlab_core.methods.de_bonet.analysis import PIXELS_AT_ONCE
 from texlab_core.methods.de_bonet.collapse import coarsest, collapse_steps, enlarge
 from texlab_core.methods.de_bonet.quadtree import Grid
-from texlab_core.work.tasks import relay, through
+from texlab_core.work.tasks import relay, row_bounds, through
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Sequence
@@ -49,7 +49,7 @@ def visible(image: FloatImage, size: tuple[int, int]) -> FloatImage:
 def visible_steps(image: FloatImage, size: tuple[int, int]) -> Generator[None, None, FloatImage]:
     """Do what :func:`visible` does in parts of a few milliseconds."""
     out = np.empty((*size, image.shape[2]), np.float32)
-    for first, last in row_blocks(size[0], size[1] * image.shape[2]):
+    for first, last in row_bounds((size[0], size[1] * image.shape[2]), PIXELS_AT_ONCE):
         np.clip(image[first:last, : size[1]], 0, 1, out=out[first:last])
         yield
     return out

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.engine.steps import Map
-from texlab_core.methods.de_bonet.analysis import row_blocks
+from texlab_core.methods.de_bonet.analysis import PIXELS_AT_ONCE
 from texlab_core.methods.de_bonet.sampling import list_matches, match_chain
+from texlab_core.work.tasks import row_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -61,7 +62,7 @@ def source_map_steps(
     if level == 0:
         analysis = sampling.analysis
         places = np.stack((analysis.rows[places[:, 0]], analysis.columns[places[:, 1]]), axis=1)
-    for first, last in row_blocks(height, width):
+    for first, last in row_bounds((height, width), PIXELS_AT_ONCE):
         source_rows(sampling.sources[level], row_part, column_part, places, out, first, last)
         yield
     return out

@@ -10,7 +10,7 @@ import numpy as np
 from texlab_core.engine.steps import Curve, Map, Output, Step
 from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps, largest_copy
 from texlab_core.methods.efros_leung.told import DISTANCE, EXACT_SHARE, GARBAGE, OWN_DISTANCE
-from texlab_core.work.tasks import through
+from texlab_core.work.tasks import row_blocks, through
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -52,9 +52,7 @@ def report(
     source = np.empty((height, width, 2), np.int32)
     order = np.empty((height, width), np.float32)
     tally = _Tally(int(canvas.order.max(initial=0)))
-    rows = max(1, _PIXELS_AT_ONCE // width)
-    for first in range(0, height, rows):
-        part = slice(first, first + rows)
+    for part in row_blocks((height, width), _PIXELS_AT_ONCE):
         places = canvas.source[part] - 1
         source[part, :, 0], source[part, :, 1] = places // exemplar.size[1], places % exemplar.size[1]
         source[part][places < 0] = -1

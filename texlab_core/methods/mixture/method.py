@@ -18,7 +18,7 @@ from texlab_core.methods.heeger_bergen import method as plain
 from texlab_core.methods.mixture.blending import Recipe, blend
 from texlab_core.methods.mixture.common import Common
 from texlab_core.methods.mixture.params import MixtureParams, shares
-from texlab_core.work.tasks import Pace, row_blocks
+from texlab_core.work.tasks import Pace, relay, row_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -144,13 +144,13 @@ def _within(steps: Generator[Step, None, ReturnT], place: int, count: int) -> Ge
     def part(step: Step) -> Step:
         return replace(step, done=round(units * (place + step.fraction)), total=units * count)
 
-    return (yield from _mapped(steps, part))
+    return (yield from relay(steps, part))
 
 
 def _after(steps: Generator[Step, None, ReturnT]) -> Generator[Step, None, ReturnT]:
     """Count the steps of a synthesis on from the blending."""
     return (
-        yield from _mapped(
+        yield from relay(
             steps, lambda step: replace(step, done=step.done + BLENDING, total=step.total + BLENDING)
         )
     )
@@ -170,23 +170,8 @@ def _in_channels(steps: Generator[Step, None, Output], channels: int) -> Generat
         make = step.preview
         return step if make is None else replace(step, preview=lambda: wide(make()))
 
-    output = yield from _mapped(steps, widened)
+    output = yield from relay(steps, widened)
     return replace(output, image=wide(output.image))
-
-
-def _mapped(
-    steps: Generator[Step, None, ReturnT], change: Callable[[Step], Step]
-) -> Generator[Step, None, ReturnT]:
-    try:
-        while True:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                result: ReturnT = end.value
-                return result
-            yield change(step)
-    finally:
-        steps.close()
 
 
 register(
