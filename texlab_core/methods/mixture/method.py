@@ -150,9 +150,7 @@ def _within(steps: Generator[Step, None, ReturnT], place: int, count: int) -> Ge
 def _after(steps: Generator[Step, None, ReturnT]) -> Generator[Step, None, ReturnT]:
     """Count the steps of a synthesis on from the blending."""
     return (
-        yield from relay(
-            steps, lambda step: replace(step, done=step.done + BLENDING, total=step.total + BLENDING)
-        )
+        yield from relay(steps, lambda step: replace(step, done=step.done + BLENDING, total=step.total + BLENDING))
     )
 
 
