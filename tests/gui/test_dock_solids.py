@@ -173,6 +173,14 @@ def test_panes_stand_in_one_row_or_two(qtbot: Any, dock: SolidsDock) -> None:
     qtbot.waitUntil(lambda: rows() == 2)
 
 
+def test_making_it_opens_no_window_beside(qtbot: Any) -> None:
+    before = set(QApplication.topLevelWidgets())
+    made = SolidsDock()
+    qtbot.addWidget(made)
+    shown_now = {each for each in set(QApplication.topLevelWidgets()) - before if each.isVisible()}
+    assert not shown_now
+
+
 def test_both_themes_paint_the_objects_ground(dock: SolidsDock, result: Result) -> None:
     light = feed(dock, scene(result)).drawn[0, 0].copy()
     dock.set_theme(DARK)

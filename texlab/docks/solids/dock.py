@@ -100,14 +100,14 @@ class SolidsDock(FramedDock):
         )
         self.panes: dict[Cut, SlicePane] = {}
         for cut in CUTS:
-            pane = SlicePane(f"solids-{cut}", NAMES[cut])
+            pane = SlicePane(f"solids-{cut}", NAMES[cut], self.body)
             pane.moved.connect(partial(self._move, cut))
             pane.stepped.connect(partial(self._step, cut))
             pane.released.connect(self.ask)
             self.panes[cut] = pane
-        self.exemplar = PictureArea("solids-exemplar", "Exemplar", "What the solid was made from")
-        self.object = ObjectPane("solids-object", "Carved from the solid")
-        self.wrapped = ObjectPane("solids-wrapped", "Wrapped in the image")
+        self.exemplar = PictureArea("solids-exemplar", "Exemplar", "What the solid was made from", self.body)
+        self.object = ObjectPane("solids-object", "Carved", self.body)
+        self.wrapped = ObjectPane("solids-wrapped", "Wrapped image", self.body)
         for turning in (self.object, self.wrapped):
             turning.turned.connect(self._turn)
             turning.zoomed.connect(self._zoom)
