@@ -26,6 +26,7 @@ WRITERS = {
     "fill": (["fill", EXEMPLAR, "--size", "40x40", "--out"], ".png"),
     "compare": (["compare", EXEMPLAR, "--methods", "tiling", "--out"], ".png"),
     "sweep": (["sweep", EXEMPLAR, "--method", "tiling", "--vary", "seed=1:2:2", "--out"], ".png"),
+    "export": (["export", "saved.png", "--seeds", "1", "--out"], ".png"),
     "encode": (["encode", EXEMPLAR, "--out"], ".msg.json"),
     "solid": (["solid", "missing.tif", "--out"], ".png"),
     "screenshot": (["screenshot", "--out"], ".png"),
@@ -36,6 +37,7 @@ READERS = {
     "fill": ["fill", "", "--size", "40x40", "--out", "a.png"],
     "compare": ["compare", "", "--out", "a.png"],
     "sweep": ["sweep", "", "--method", "tiling", "--vary", "seed=1:2:2", "--out", "a.png"],
+    "export": ["export", "", "--out", "a.png"],
     "encode": ["encode", "", "--out", "a.msg.json"],
 }
 

@@ -84,11 +84,21 @@ def test_jpeg_is_close(tmp_path):
         assert (tmp_path / name).read_bytes().startswith(b"\xff\xd8\xff")
 
 
+NO_EXR = "nothing that is installed writes EXR; a .tif of floats holds the same values."
+ALL = ".png, .tif, .tiff, .webp, .jpg, .jpeg, .avif, .jxl"
+
+
 @pytest.mark.parametrize(
     ("name", "pixels", "options", "says"),
     [
-        ("a.gif", NOISE, {}, "a.gif: images are written as .png, .tif, .tiff, .webp, .jpg, .jpeg, got '.gif'."),
-        ("a", NOISE, {}, "a: images are written as .png, .tif, .tiff, .webp, .jpg, .jpeg, got ''."),
+        ("a.gif", NOISE, {}, f"a.gif: images are written as {ALL}, got '.gif'."),
+        ("a", NOISE, {}, f"a: images are written as {ALL}, got ''."),
+        (
+            "a.exr",
+            NOISE,
+            {},
+            f"a.exr: {NO_EXR}",
+        ),
         ("a.png", NOISE, {"bits": "float"}, "a.png: the bits of a .png file must be 8 or 16, got 'float'."),
         ("a.jpg", NOISE, {"bits": 16}, "a.jpg: the bits of a .jpg file must be 8, got 16."),
         ("a.tif", NOISE, {"bits": 12}, "a.tif: the bits of a .tif file must be 8 or 16 or float, got 12."),

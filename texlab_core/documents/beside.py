@@ -42,15 +42,39 @@ def write_with_recipe(path: str | os.PathLike[str], data: bytes, recipe: str) ->
     target, beside = Path(path), sidecar(path)
     new = json.loads(recipe) | {_OF: hashlib.sha256(data).hexdigest()}
     meanwhile = new
-    if beside.exists() or beside.is_symlink():
-        old = _load(beside)
-        if old is None:
-            raise InputError(f"{beside} is there already and holds no recipe; choose another name for the file.")
+    if check_beside(path).exists() and (old := _load(beside)) is not None:
         meanwhile = new | {_BEFORE: {key: value for key, value in old.items() if key != _BEFORE}}
     write_together(
         {target: data, beside: _packed(new)},
         manifest=(beside, _packed(meanwhile)),
     )
+
+
+def check_beside(path: str | os.PathLike[str]) -> Path:
+    """Return where the recipe of a file goes; raises ``InputError`` when something else lies there."""
+    beside = sidecar(path)
+    if (beside.exists() or beside.is_symlink()) and _load(beside) is None:
+        raise InputError(f"{beside} is there already and holds no recipe; choose another name for the file.")
+    return beside
+
+
+def sidecar_bytes(path: str | os.PathLike[str], recipe: str, digest: str) -> bytes:
+    """Return what lies beside a file, for sets of files.
+
+    Parameters
+    ----------
+    path
+        The file; the recipe of one that it replaces is kept in the new one, so that either has its own.
+    recipe
+        As JSON.
+    digest
+        SHA-256 of the file's new content.
+    """
+    new = json.loads(recipe) | {_OF: digest}
+    beside = check_beside(path)
+    if beside.exists() and (old := _load(beside)) is not None:
+        new |= {_BEFORE: {key: value for key, value in old.items() if key != _BEFORE}}
+    return _packed(new)
 
 
 def read_beside(path: Path, file: BinaryIO) -> str | None:

@@ -102,7 +102,7 @@ def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
             found = file.read(MAX_BYTES + 1)
     except ValueError as error:
         raise RecipeError(f"The recipe of {name} {error}.") from error
-    if found is None and path is not None and head.startswith((b"\x93NUMPY", b"GIF8", b"RIFF")):
+    if found is None and path is not None and _keeps_beside(head):
         file.seek(0)
         found = read_beside(path, file)
     if found is None and path is not None and head.startswith(jpeg_text.SIGNATURE):
@@ -110,6 +110,12 @@ def _find(file: BinaryIO, path: Path | None, name: str) -> str | bytes:
     if found is None:
         raise NoRecipeError(f"{sentence_case(name)} holds no recipe; only results that TexLab saved do.")
     return found
+
+
+def _keeps_beside(head: bytes) -> bool:
+    """Return whether recipes lie beside files that start like this: .npy, GIF, WebP, AVIF, MP4, JPEG XL."""
+    starts = (b"\x93NUMPY", b"GIF8", b"RIFF", b"\xff\x0a", b"\0\0\0\x0cJXL ")
+    return head.startswith(starts) or head[4:8] == b"ftyp"
 
 
 def _beside(file: BinaryIO, path: Path) -> bytes | None:

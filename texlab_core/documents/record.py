@@ -18,7 +18,7 @@ from texlab_core.engine.sizes import size_to_json
 from texlab_core.files.whole import write_together
 from texlab_core.images.formats.maps import made_folder, map_files, save_maps, unfinished
 from texlab_core.images.formats.volumes import check_volume_format, default_volume_bits, encode_volume
-from texlab_core.images.formats.writing import check_format, default_bits, encode_image
+from texlab_core.images.formats.writing import TEXT_SUFFIXES, check_format, default_bits, encode_image
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -47,19 +47,20 @@ def save_result(
     alpha: FloatImage | None = None,
     maps: str | os.PathLike[str] | None = None,
     spare: Iterable[str | os.PathLike[str]] = (),
+    quality: int | None = None,
 ) -> None:
     """Save a result's image, or its volume, with its recipe, and its maps: all of it or nothing.
 
     A PNG has the recipe as a text chunk, a TIFF as its description (a stack as ImageJ's info), a JPEG in
-    application segments, a WebP in a chunk, and a .npy in a file ``.texlab.json`` beside it. The recipe holds
-    every input up to 2 MB.
+    application segments, a WebP in a chunk, and a .npy, AVIF or JPEG XL in a file ``.texlab.json`` beside it. The
+    recipe holds every input up to 2 MB.
 
     Parameters
     ----------
     result
         What to save.
     path
-        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg; for a volume in .tif, .tiff or .npy.
+        Ends in .png, .tif, .tiff, .webp, .jpg, .jpeg, .avif or .jxl; for a volume in .tif, .tiff or .npy.
     bits
         8, 16 or "float" (TIFF only) for each sample; by default the exemplar's own, as far as the format goes.
     alpha
@@ -68,6 +69,8 @@ def save_result(
         Folder for the maps and curves (see :func:`save_maps`); None saves none.
     spare
         Files that no map may overwrite.
+    quality
+        1 to 100, for formats that can lose something; see :func:`encode_image`.
 
     Raises
     ------
@@ -80,13 +83,10 @@ def save_result(
     suffix = check_result_format(path, bits, len(result.job.size))
     recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
     made = {} if maps is None else map_files(result, Path(maps), spare=[path, sidecar(path), *spare])
-    if result.volume is None:
-        data = encode_image(path, result.image, bits=bits, text={KEY: recipe}, alpha=alpha)
-    elif suffix != ".npy":
-        data = encode_volume(path, result.volume, bits=bits, info=recipe)
-    else:
-        # The set of a solid has one more file, which cannot be part of that of its maps.
-        write_with_recipe(path, encode_volume(path, result.volume), recipe)
+    data = encode_result(result, path, bits=bits, alpha=alpha, quality=quality, recipe=recipe)
+    if not holds_recipe(suffix):
+        # The set has one more file, which cannot be part of that of the maps.
+        write_with_recipe(path, data, recipe)
         if maps is not None:
             save_maps(result, maps)
         return
@@ -95,6 +95,43 @@ def save_result(
         return
     with made_folder(Path(maps)):
         write_together({Path(path): data} | made, manifest=unfinished(made))
+
+
+def holds_recipe(path: str | os.PathLike[str]) -> bool:
+    """Return whether files of this name or suffix hold their recipe; else it lies beside them."""
+    return os.fspath(path).lower().endswith(TEXT_SUFFIXES)
+
+
+def encode_result(
+    result: Result,
+    path: str | os.PathLike[str],
+    *,
+    bits: Bits,
+    alpha: FloatImage | None = None,
+    quality: int | None = None,
+    recipe: str | None = None,
+) -> bytes:
+    """Return the bytes of a result's file: its image, or its volume.
+
+    Parameters
+    ----------
+    result
+        What to save.
+    path, bits, alpha, quality
+        As for :func:`save_result`.
+    recipe
+        As JSON; put inside where the format holds it.
+
+    Raises
+    ------
+    ImageError
+        When the format is unknown or cannot hold what is asked.
+    """
+    inside = recipe if holds_recipe(path) else None
+    if result.volume is not None:
+        return encode_volume(path, result.volume, bits=bits, info=inside)
+    text = None if inside is None else {KEY: inside}
+    return encode_image(path, result.image, bits=bits, text=text, alpha=alpha, quality=quality)
 
 
 def result_bits(result: Result, path: str | os.PathLike[str]) -> Bits:

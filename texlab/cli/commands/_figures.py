@@ -10,6 +10,7 @@ from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
     from texlab.cli.parser import Parser
     from texlab_core.sheets.figure import Figure
@@ -48,10 +49,7 @@ def parse_figure(args: argparse.Namespace, columns: int | None = None) -> Figure
     if not is_figure(args.out):
         if Path(args.out).suffix.lower() != ".png":
             raise ParamError("out", "a file name that ends in .png, .pdf or .svg", args.out)
-        wrong = [_OPTIONS[name] for name, key in given.items() if getattr(args, key) is not None]
-        wrong += [each for each in ("--no-letters", "--no-captions") if getattr(args, each[2:].replace("-", "_"))]
-        if wrong:
-            raise ParamError(wrong[0].lstrip("-"), "left out unless --out ends in .pdf or .svg", args.out)
+        refuse_figure_options(args)
         return None
     numbers = {
         name: parse_number(_OPTIONS[name].lstrip("-"), getattr(args, key), int if name == "bar" else float)
@@ -60,3 +58,12 @@ def parse_figure(args: argparse.Namespace, columns: int | None = None) -> Figure
     }
     look: dict[str, Any] = dict(numbers)
     return Figure(columns=columns, letters=not args.no_letters, captions=not args.no_captions, **look)
+
+
+def refuse_figure_options(args: argparse.Namespace, more: Sequence[str] = ()) -> None:
+    """Raise ``ParamError`` when an option of figures (or one of ``more``) is given for what is none."""
+    names = [*(option[2:].replace("-", "_") for option in _OPTIONS.values()), *more]
+    wrong = [name for name in names if getattr(args, name) is not None]
+    wrong += [name for name in ("no_letters", "no_captions") if getattr(args, name)]
+    if wrong:
+        raise ParamError(wrong[0].replace("_", "-"), "left out unless --out ends in .pdf or .svg", args.out)

@@ -16,12 +16,12 @@ def is_webp(head: bytes) -> bool:
 
 
 def with_text(webp: bytes, key: str, text: str) -> bytes:
-    """Return a lossless WebP file with a text behind its picture.
+    """Return a WebP file with a text behind its picture.
 
     Parameters
     ----------
     webp
-        A file with a VP8L chunk, alone or with a header (VP8X) before it.
+        A file with a VP8L or VP8 chunk, alone or with a header (VP8X) before it.
     key
         ASCII, without a null character.
     text
@@ -41,8 +41,13 @@ def with_text(webp: bytes, key: str, text: str) -> bytes:
         flags = _ALPHA if bits >> 28 & 1 else 0
         sides = b"".join(each.to_bytes(3, "little") for each in (bits & 0x3FFF, bits >> 14 & 0x3FFF))
         body = _chunk(b"VP8X", bytes([flags, 0, 0, 0]) + sides) + body
+    elif body.startswith(b"VP8 ") and body[11:14] == b"\x9d\x01*":
+        # Sides of 14 bits follow the start code of a key frame (RFC 6386, 9.1).
+        width, height = (int.from_bytes(body[at : at + 2], "little") & 0x3FFF for at in (14, 16))
+        sides = b"".join((each - 1).to_bytes(3, "little") for each in (width, height))
+        body = _chunk(b"VP8X", bytes(4) + sides) + body
     elif not body.startswith(b"VP8X"):
-        raise ValueError("The text of a WebP file goes behind a lossless picture.")
+        raise ValueError("The text of a WebP file goes behind a picture.")
     body += _chunk(_KIND, key.encode("ascii") + b"\0" + text.encode())
     return b"RIFF" + struct.pack("<I", 4 + len(body)) + b"WEBP" + body
 

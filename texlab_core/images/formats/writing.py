@@ -1,4 +1,4 @@
-"""Write images: PNG of 8 or 16 bits, TIFF of 8 or 16 bits or floats, lossless WebP, JPEG; whole or not at all."""
+"""Write images: PNG, TIFF, WebP, JPEG, AVIF and JPEG XL, as deep as each of them goes; whole or not at all."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from texlab_core.errors import ImageError
 from texlab_core.files.whole import write_whole
 from texlab_core.images.formats import jpeg_text, webp_text
+from texlab_core.images.formats.modern import check_codec
 from texlab_core.images.formats.png_text import with_chunk, with_text
 
 if TYPE_CHECKING:
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Bits = Literal[8, 16, "float"]
-WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg")
+WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg", ".avif", ".jxl")
+LOSSY_SUFFIXES = (".webp", ".jpg", ".jpeg", ".avif", ".jxl")
+TEXT_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg")
 _BITS: dict[str, tuple[Bits, ...]] = {
     ".png": (8, 16),
     ".tif": (8, 16, "float"),
@@ -28,6 +31,8 @@ _BITS: dict[str, tuple[Bits, ...]] = {
     ".webp": (8,),
     ".jpg": (8,),
     ".jpeg": (8,),
+    ".avif": (8,),
+    ".jxl": (8, 16, "float"),
 }
 _ROWS = 256
 _JPEG_QUALITY = 95
@@ -64,13 +69,14 @@ def encode_image(
     bits: Bits = 8,
     text: Mapping[str, str] | None = None,
     alpha: NDArray[np.floating[Any]] | None = None,
+    quality: int | None = None,
 ) -> bytes:
     """Return the bytes of an image file.
 
     Parameters
     ----------
     path
-        Ends in .png, .tif, .tiff, .webp, .jpg or .jpeg, which chooses the format.
+        Ends in .png, .tif, .tiff, .webp, .jpg, .jpeg, .avif or .jxl, which chooses the format.
     pixels
         (H, W) or (H, W, 1 | 3) floats in [0, 1]; integers of a file are rounded to the nearest, and values outside
         are clipped. Floats are written as float32, as they are.
@@ -81,6 +87,9 @@ def encode_image(
         what starts with a brace and has a "shape" is taken by other programs for a description of theirs.
     alpha
         (H, W) or (H, W, 1) floats in [0, 1], for all formats but JPEG; colours are not multiplied by it.
+    quality
+        1 to 100, for the formats that can lose something: JPEG (95 when None), WebP, AVIF and JPEG XL, which lose
+        nothing when None.
 
     Raises
     ------
@@ -89,6 +98,7 @@ def encode_image(
     """
     suffix = check_format(path, bits)
     name = os.fspath(path)
+    check_quality(path, quality)
     image = np.asarray(pixels)
     if (
         image.dtype.kind != "f"
@@ -109,7 +119,15 @@ def encode_image(
         return encode_png(values, text)
     if suffix in (".tif", ".tiff"):
         return _encode_tiff(values, text)
-    return _encode_webp(values, text, name) if suffix == ".webp" else _encode_jpeg(values, text)
+    if suffix == ".webp":
+        return _encode_webp(values, text, name, quality)
+    if suffix in (".avif", ".jxl"):
+        from texlab_core.images.formats.modern import encode_avif, encode_jxl
+
+        if text:
+            raise ValueError(f"A {suffix} file takes no text.")
+        return encode_avif(values, quality) if suffix == ".avif" else encode_jxl(values, quality)
+    return _encode_jpeg(values, text, _JPEG_QUALITY if quality is None else quality)
 
 
 def _with_alpha(
@@ -170,13 +188,30 @@ def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
     if not os.fspath(path):
         raise ImageError("The name of the file to write is empty.")
     if suffix not in _BITS:
+        if suffix == ".exr":
+            raise ImageError(
+                f"{os.fspath(path)}: nothing that is installed writes EXR; a .tif of floats holds the same values."
+            )
         raise ImageError(
             f"{os.fspath(path)}: images are written as {', '.join(WRITABLE_SUFFIXES)}, got {suffix!r}."
         )
+    check_codec(suffix, os.fspath(path))
     if bits not in _BITS[suffix]:
         allowed = " or ".join(str(each) for each in _BITS[suffix])
         raise ImageError(f"{os.fspath(path)}: the bits of a {suffix} file must be {allowed}, got {bits!r}.")
     return suffix
+
+
+def check_quality(path: str | os.PathLike[str], quality: int | None) -> None:
+    """Raise ``ImageError`` when a quality is out of range, or the format of this name loses nothing anyway."""
+    suffix = Path(path).suffix.lower()
+    if quality is None:
+        return
+    if isinstance(quality, bool) or not isinstance(quality, int) or not 1 <= quality <= 100:
+        raise ImageError(f"quality: must be a whole number from 1 to 100, got {quality!r}.")
+    if suffix not in LOSSY_SUFFIXES:
+        kinds = ", ".join(LOSSY_SUFFIXES)
+        raise ImageError(f"quality: is for {kinds}; a {suffix} file loses nothing and takes none.")
 
 
 def quantize(pixels: NDArray[np.floating[Any]], peak: int) -> NDArray[Any]:
@@ -220,7 +255,7 @@ def _encode_tiff(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
     return out.getvalue()
 
 
-def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str) -> bytes:
+def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str, quality: int | None) -> bytes:
     import imagecodecs
 
     if max(values.shape[:2]) > _MAX_WEBP_SIDE:
@@ -233,18 +268,19 @@ def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str
     # The format has no gray.
     rgb = np.repeat(planes[..., :1], 3, axis=2) if colours == 1 else planes[..., :3]
     whole = np.ascontiguousarray(np.concatenate([rgb, planes[..., colours:]], axis=2))
-    webp = bytes(imagecodecs.webp_encode(whole, lossless=True))
+    lossless = quality is None
+    webp = bytes(imagecodecs.webp_encode(whole, level=None if lossless else quality, lossless=lossless))
     for key, each in (text or {}).items():
         webp = webp_text.with_text(webp, key, each)
     return webp
 
 
-def _encode_jpeg(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
+def _encode_jpeg(values: NDArray[Any], text: Mapping[str, str] | None, quality: int) -> bytes:
     from PIL import Image
 
     out = io.BytesIO()
     # Colour at full resolution: textures have fine colour.
-    Image.fromarray(values).save(out, "JPEG", quality=_JPEG_QUALITY, subsampling=0)
+    Image.fromarray(values).save(out, "JPEG", quality=quality, subsampling=0)
     jpeg = out.getvalue()
     for key, each in (text or {}).items():
         jpeg = jpeg_text.with_text(jpeg, key, each)
