@@ -10,7 +10,6 @@ from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable
 
     import numpy as np
     from numpy.typing import NDArray
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
 TEXTURES = ("noise", "discs")
 EXPERIMENT_KINDS = ("orthographic", "border", "marks", "perspective", "counts")
 MOST_TRIALS = 1000
-# Of the search among hypotheses: one tilt in so many is right by chance.
-_TILTS = 12
 
 
 def _shape_options(parser: Parser) -> None:
@@ -113,13 +110,8 @@ def _homogeneity(args: argparse.Namespace) -> int:
         raise ParamError("points", "a whole number from 20 to 20000", points)
     rng = _rng(args)
     out = out_file(args)
-    experiment = {
-        "orthographic": _orthographic,
-        "border": _orthographic,
-        "marks": _marks,
-        "perspective": _perspective,
-        "counts": _counts,
-    }[args.kind]
+    from texlab_core.shape.experiments import experiment
+
     answer, lines, tiles = experiment(args.kind, truth, points, trials, rng)
 
     def sheet() -> Any:
@@ -128,104 +120,6 @@ def _homogeneity(args: argparse.Namespace) -> int:
         return contact_sheet(tiles, len(tiles))
 
     return report(args, {"experiment": args.kind, **answer}, lines, out, sheet)
-
-
-Outcome = tuple[dict[str, Any], list[str], list[Any]]
-
-
-def _orthographic(kind: str, truth: Orientation, count: int, trials: int, rng: np.random.Generator) -> Outcome:
-    from texlab_core.shape import homogeneity, points
-    from texlab_core.shape.orientation import Orientation
-    from texlab_core.shape.sheets import TRUTH, landscape_picture, points_picture
-    from texlab_core.sheets.contact_sheet import Tile
-
-    at_border = kind == "border"
-    tilts = [Orientation(truth.slant, (truth.tilt + 180 * k / _TILTS) % 180) for k in range(_TILTS)]
-    hypotheses = [*tilts, Orientation(0)] if at_border else tilts
-    patterns = [points.poisson(count, truth, rng) for _ in range(trials)]
-    chosen = [homogeneity.most_uniform(each, hypotheses, at_border=at_border) for each in patterns]
-    along, across = (
-        sum(each) for each in zip(*(homogeneity.count_ratio(p, truth.tilt) for p in patterns), strict=True)
-    )
-    answer: dict[str, Any] = {"chosen_true": chosen.count(0) / trials, "by_chance": 1 / len(hypotheses)}
-    lines = [f"the true orientation is chosen in {100 * answer['chosen_true']:.0f} % of {trials} patterns"]
-    if at_border:
-        answer["chosen_frontal"] = chosen.count(_TILTS) / trials
-        lines.append(f"slant 0 is chosen in {100 * answer['chosen_frontal']:.0f} %: an artefact of the border")
-    else:
-        lines[0] += f", and {100 / len(hypotheses):.0f} % are chance"
-        answer["count_ratio"] = along / max(across, 1)
-        lines.append(f"points in a rectangle along the tilt over one across it: {answer['count_ratio']:.3f}")
-    tiles = []
-    for name, orientation in (("slanted", truth), ("frontal control", Orientation(0))):
-        pattern = patterns[0] if orientation is truth else points.poisson(count, orientation, rng)
-        values, axis = homogeneity.uniformity_landscape(pattern, at_border=at_border)
-        tiles.append(Tile(points_picture(pattern), (name,)))
-        tiles.append(
-            Tile(landscape_picture(values, axis, [(orientation, TRUTH)], (0, 1)), ("unevenness of hypotheses",))
-        )
-    return answer, lines, tiles
-
-
-def _marks(kind: str, truth: Orientation, count: int, trials: int, rng: np.random.Generator) -> Outcome:
-    from texlab_core.shape.homogeneity import orientation_of_marks, random_marks
-    from texlab_core.shape.sheets import points_picture
-    from texlab_core.sheets.contact_sheet import Tile
-
-    drawn = [random_marks(count, truth, rng) for _ in range(trials)]
-    errors = [orientation_of_marks(tensors).error(truth) for _, tensors in drawn]
-    found = orientation_of_marks(drawn[0][1])
-    answer = {"mean_error": sum(errors) / trials, "found": _told(found), "truth": _told(truth)}
-    lines = [f"mean shape of {count} marks: the normal is {answer['mean_error']:.1f}° off on average"]
-    return answer, lines, [Tile(points_picture(*drawn[0]), (_line("marks", found, truth),))]
-
-
-def _perspective(kind: str, truth: Orientation, count: int, trials: int, rng: np.random.Generator) -> Outcome:
-    from texlab_core.shape.homogeneity import orientation_of_density, perspective_points
-    from texlab_core.shape.sheets import points_picture
-    from texlab_core.sheets.contact_sheet import Tile
-
-    drawn = [perspective_points(count, truth, rng) for _ in range(trials)]
-    fits = [orientation_of_density(each) for each in drawn]
-    errors = [fit.orientation.error(truth) for fit in fits]
-    answer = {
-        "mean_error": sum(errors) / trials,
-        "at_guard": sum(fit.at_guard for fit in fits) / trials,
-        "found": _told(fits[0].orientation),
-        "truth": _told(truth),
-    }
-    lines = [f"density of {count} points: the normal is {answer['mean_error']:.1f}° off on average"]
-    told = f"slant {fits[0].orientation.slant:.0f}°, tilt {fits[0].orientation.tilt:.0f}°"
-    return answer, lines, [Tile(points_picture(drawn[0]), (told,))]
-
-
-def _counts(kind: str, truth: Orientation, count: int, trials: int, rng: np.random.Generator) -> Outcome:
-    from texlab_core.shape import points
-    from texlab_core.shape.exercises import back_projected_areas
-    from texlab_core.shape.sheets import points_picture
-    from texlab_core.sheets.contact_sheet import Tile
-
-    sets = 6
-    makers: tuple[tuple[str, Callable[[], NDArray[np.float64]]], ...] = (
-        ("Poisson, slanted", lambda: points.poisson(count, truth, rng)),
-        ("regular", lambda: points.regular(count, rng)),
-    )
-    answer: dict[str, Any] = {"sets": sets * sets}
-    lines, tiles = [], []
-    for name, make in makers:
-        drawn = [make() for _ in range(trials)]
-        values = [points.count_in_sets(each, sets).p_value for each in drawn]
-        uneven, even = (sum(each) / trials for each in ([p < 0.05 for p in values], [p > 0.95 for p in values]))
-        answer[name.partition(",")[0].lower()] = {"uneven": uneven, "even": even}
-        lines.append(
-            f"{name}: p < .05 in {100 * uneven:.1f} %, p > .95 in {100 * even:.1f} % of {trials} patterns"
-        )
-        told = points.count_in_sets(drawn[0], sets)
-        tiles.append(Tile(points_picture(drawn[0], sets=sets), (f"{name}: p {told.p_value:.2f}", told.verdict)))
-    areas = back_projected_areas(sets, sets, truth, "orthographic")
-    answer["area_on_plane"] = {"smallest": float(areas.min()), "largest": float(areas.max())}
-    lines.append(f"each set is {areas.min():.4f} to {areas.max():.4f} of the plane: counts tell no tilt")
-    return answer, lines, tiles
 
 
 def _sphere_options(parser: Parser) -> None:
