@@ -40,15 +40,24 @@ def _candidates(settings: Candidates, scene: Scene) -> Drawn:
     ]
     counts = []
     for each in explained.levels:
-        found = each.candidates[: settings.most].tolist()
+        # What a place is drawn from; above level 0, what it has left for the levels below.
+        places = each.matches if each.level else each.candidates
+        found = places[: settings.most].tolist()
         boxes = [explained.exemplar_box(each.level, *place) for place in found]
         own = explained.exemplar_box(each.level, *each.source)
         picture = with_boxes(with_boxes(exemplar, boxes, _FOUND), [own], _CHOSEN)
-        tiles.append(Tile(picture, (f"level {each.level}: {len(each.candidates)} candidates",)))
-        counts.append(f"{len(each.candidates)}")
-    many = min(4, len(tiles))
-    line = "candidates, coarse to fine: " + ", ".join(counts)
+        tiles.append(
+            Tile(enlarged(picture, max(result.image.shape[:2])), (f"level {each.level}: {counted(len(places))}",))
+        )
+        counts.append(f"{len(places)}")
+    many = min(3, len(tiles))
+    line = "places left, coarse to fine: " + ", ".join(counts)
     return Drawn(contact_sheet(tiles, many, largest=_CELL), (line,))
+
+
+def counted(places: int) -> str:
+    """Return a number of places in words."""
+    return "1 place is left" if places == 1 else f"{places} places are left"
 
 
 @dataclass(frozen=True, kw_only=True)
