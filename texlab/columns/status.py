@@ -35,6 +35,8 @@ def status_parts(scene: ColumnScene) -> list[str]:
     """Return what is said under a column's picture."""
     if scene.status == "failed":
         return [scene.message]
+    if scene.status == "idle" and scene.message:
+        return [scene.message]
     parts = []
     sign = scene.message if scene.status == "waiting" and scene.message else _SIGNS[scene.status]
     if sign:

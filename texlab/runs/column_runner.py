@@ -203,6 +203,12 @@ class ColumnRunner(QObject):
         self.worker.cancel()
         self._show(status="waiting" if coming else "idle", message="", result=None)
 
+    def hold(self, column: Column, sentence: str) -> None:
+        """Take a column's settings, and say what its run would take; it starts when the user asks for it."""
+        self.worker.cancel()
+        self._announce(column, small=False)
+        self._show(status="idle", message=sentence, result=None, draft=False)
+
     def fail(self, sentence: str) -> None:
         """Say why there is nothing to run."""
         self._show(status="failed", message=sentence, result=None, draft=False)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from texlab.runs.column_run import with_exemplar
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
@@ -19,13 +20,15 @@ from texlab.state.changes import rescaled
 from texlab.state.difference import difference
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.estimate import estimate_of, in_words, is_large
 from texlab_core.engine.registry import find_method
+from texlab_core.engine.sizes import size_text
 from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.state.session import Sample, Session, State
+    from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
@@ -52,6 +55,8 @@ class Controller(QObject):
         self._leaving: list[ColumnRunner] = []
         self._dragging = False
         self._cropping = False
+        # Large jobs that came with a file from outside wait for the user.
+        self._ask_first = False
         self._probe: Probe | None = None
         self._preparation = Preparation(self)
         self._preparation.ready.connect(self._exemplar_prepared)
@@ -189,8 +194,13 @@ class Controller(QObject):
         if column is not None:
             self.session.set_params(column_id, find_method(column.method).params(), "reset all")
 
+    def ask_first(self) -> None:
+        """Let large jobs wait for the user, until they ask for one: what comes next is from a file."""
+        self._ask_first = True
+
     def run_column(self, column_id: int) -> None:
-        """Run a column at full size."""
+        """Run a column at full size, however large."""
+        self._ask_first = False
         self._start(column_id, alone=True)
 
     def go_on(self, column_id: int) -> None:
@@ -200,7 +210,8 @@ class Controller(QObject):
             self._start(column_id, go_on=True, alone=True)
 
     def run_all(self) -> None:
-        """Run every column."""
+        """Run every column, however large."""
+        self._ask_first = False
         for column in self.session.state.columns:
             self._start(column.id)
 
@@ -312,7 +323,19 @@ class Controller(QObject):
         exemplar = self.exemplar
         if runner is None or column is None or exemplar is None or (self._preparation.busy and not draft):
             return
+        large = self._what_it_takes(column, exemplar) if self._ask_first and not draft else ""
+        if large:
+            runner.hold(column, large)
+            return
         runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone)
+
+    def _what_it_takes(self, column: Column, exemplar: ImageInput) -> str:
+        """Return the sentence that asks before a large job starts; empty for any other."""
+        method, size = find_method(column.method), self.session.state.size_of(column)
+        expected = estimate_of(method, with_exemplar(exemplar, column.inputs), column.params, size)
+        if not is_large(expected, size):
+            return ""
+        return f"{size_text(size)} needs {in_words(expected)}; F5 runs it."
 
     # Loading.
 

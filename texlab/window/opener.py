@@ -82,6 +82,7 @@ class Opener:
         first = self._session.state.sample is None
         if opened.job is not None:
             state, column_id = restored(self._session.state, opened)
+            self._controller.ask_first()
             self._session.apply(state, "restore a result")
             self._session.select(column_id)
             self._forget_start(first)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.engine.estimate import check_memory, estimate_of
 from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, Input, shorten
 from texlab_core.engine.params import Params, frozen_mapping
-from texlab_core.engine.registry import Estimate, Method, find_method
+from texlab_core.engine.registry import Method, find_method
 from texlab_core.engine.sizes import MAX_PIXELS as MAX_PIXELS
 from texlab_core.engine.sizes import check_size as check_size
-from texlab_core.engine.sizes import default_size, size_text
+from texlab_core.engine.sizes import default_size
 from texlab_core.errors import InputError, ParamError
-from texlab_core.work.memory import machine_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -70,8 +70,7 @@ class Job:
         object.__setattr__(self, "seed", check_seed(self.seed))
         if method.check is not None:
             method.check(self.inputs, self.params, self.size)
-        if method.estimate is not None:
-            _check_memory(method, method.estimate(self.inputs, self.params, self.size), self.size)
+        check_memory(method, estimate_of(method, self.inputs, self.params, self.size), self.size)
 
     def _default_size(self, dimensions: int) -> tuple[int, ...]:
         exemplar = self.inputs.get("exemplar")
@@ -111,16 +110,6 @@ def check_seed(seed: object) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed <= MAX_SEED:
         raise ParamError("seed", f"a whole number from 0 to {MAX_SEED}", seed)
     return int(seed)
-
-
-def _check_memory(method: Method, estimate: Estimate, size: tuple[int, ...]) -> None:
-    """Raise ``InputError`` when a run takes more memory than the machine has."""
-    held = machine_bytes()
-    if held is not None and estimate.nbytes > held:
-        raise InputError(
-            f"{method.title} of {size_text(size)} needs about {estimate.nbytes / 1e9:.1f} GB of memory, and this"
-            f" machine has {held / 1e9:.1f} GB; choose a smaller size."
-        )
 
 
 def _check_inputs(method: Method, inputs: Mapping[str, Input]) -> None:

@@ -43,9 +43,12 @@ class InputSpec:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What a run is expected to take: seconds on one core, and bytes beyond what the program holds already."""
+    """What a run is expected to take: seconds on one core, and bytes beyond what the program holds already.
 
-    seconds: float
+    None where nobody can say how long.
+    """
+
+    seconds: float | None
     nbytes: int
 
 
@@ -94,6 +97,8 @@ class Method:
         2 when it makes images of (height, width), 3 when it makes volumes of (depth, height, width).
     estimate
         ``estimate(inputs, params, size)`` foretells what a run takes, for methods that may take long or much.
+    bytes_per_pixel
+        Peak memory of a run for each pixel of exemplar and output, where there is no ``estimate``.
     package
         Who declares it; filled in when it is found.
     """
@@ -115,6 +120,7 @@ class Method:
     random: bool = True
     dimensions: Literal[2, 3] = 2
     estimate: Callable[..., Estimate] | None = None
+    bytes_per_pixel: int = 64
     package: str = OWN_PACKAGE
 
 

@@ -71,6 +71,7 @@ register(
         synthesize=synthesize,
         fails_on=("everything but white noise",),
         order=201,
+        bytes_per_pixel=21,
         measures=("copied-share",),
     )
 )

@@ -84,6 +84,7 @@ register(
         synthesize=synthesize,
         fails_on=("everything that does not repeat with the exemplar's own size",),
         order=200,
+        bytes_per_pixel=21,
         random=False,
         measures=("copied-share",),
     )

@@ -72,14 +72,14 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
 
 
 def _foretold(job: Job) -> str:
-    """Return the method, with what a run is expected to take where it says so."""
+    """Return the method, with what a run is expected to take where that is known or much."""
+    from texlab_core.engine.estimate import estimate_of, in_words, is_large
     from texlab_core.engine.registry import find_method
 
-    estimate = find_method(job.method).estimate
-    if estimate is None:
+    expected = estimate_of(find_method(job.method), job.inputs, job.params, job.size)
+    if expected.seconds is None and not is_large(expected, job.size):
         return job.method
-    expected = estimate(job.inputs, job.params, job.size)
-    return f"{job.method}, about {max(1, round(expected.seconds))} s and {expected.nbytes / 1e6:.0f} MB"
+    return f"{job.method}, {in_words(expected)}"
 
 
 def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:

@@ -419,6 +419,7 @@ register(
         # Sets of candidates that are never listed as a whole.
         rehearsals=(DeBonetParams(alpha=4.0),),
         order=20,
+        bytes_per_pixel=110,
         measures=("copied-share", "median-candidates", "largest-copy"),
     )
 )

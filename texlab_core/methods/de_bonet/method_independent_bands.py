@@ -129,5 +129,6 @@ register(
         fails_on=("edges, lines and everything else that several bands make together",),
         check=check,
         order=202,
+        bytes_per_pixel=54,
     )
 )

@@ -303,6 +303,7 @@ register(
             "growth that has lost its way: the same few pixels over and over",
         ),
         order=30,
+        bytes_per_pixel=65,
         measures=("copied-share", "largest-copy", EXACT_SHARE.id, DISTANCE.id, OWN_DISTANCE.id, GARBAGE.id),
     )
 )

@@ -401,5 +401,6 @@ register(
             "exemplars that are not the same all over: the result is blotchy",
         ),
         order=10,
+        bytes_per_pixel=310,
     )
 )

@@ -198,5 +198,6 @@ register(
             "colours that share no axis: their mixture is muddy",
         ),
         order=14,
+        bytes_per_pixel=400,
     )
 )

@@ -87,6 +87,7 @@ register(
             "anything that repeats at more than five pixels",
         ),
         order=43,
+        bytes_per_pixel=23,
         measures=(told.PARAMETERS.id, told.NEGATIVE_POWER.id),
     )
 )

@@ -116,6 +116,7 @@ register(
         ),
         rehearsals=(CarParams(synthesis="recursion"),),
         order=42,
+        bytes_per_pixel=23,
         measures=(PARAMETERS.id, LARGEST_POLE.id),
     )
 )

@@ -244,6 +244,7 @@ register(
         ),
         check=check,
         order=40,
+        bytes_per_pixel=35,
         measures=(PARAMETERS.id, ENERGY_ERROR.id),
     )
 )

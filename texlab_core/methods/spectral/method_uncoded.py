@@ -104,6 +104,7 @@ register(
         synthesize=synthesize,
         fails_on=("objects, outlines and letters: phase is random", "textures with few large elements"),
         order=41,
+        bytes_per_pixel=43,
         measures=(PARAMETERS.id,),
     )
 )
