@@ -28,9 +28,10 @@ bench: .venv/.ready-bench
 bar: .venv/.ready-run
 	@$(PY) -m texlab_core.figures.defaults --write resources/help/de-bonet.md
 
-# The tables of the help page on measures, from results that were looked at and labelled.
+# The tables of the help pages on measures and findings, from results that were looked at and labelled.
 calibrate: .venv/.ready-run
 	@$(PY) -m texlab_core.measures.calibrate $(or $(LABELS),../shared/labels)
+	@$(PY) -m texlab_core.findings.calibrate $(or $(LABELS),../shared/labels)
 
 wheel: .venv/.ready-run
 	@$(PY) -m pip wheel . --no-deps --quiet --wheel-dir dist

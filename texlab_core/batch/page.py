@@ -6,6 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from texlab_core.findings.finding import HINT
 from texlab_core.measures.registry import measures as known_measures
 
 if TYPE_CHECKING:
@@ -121,7 +122,8 @@ recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 <label>Search <input type="search" name="words" autocomplete="off"></label>
 <label>Method <select name="variant"><option value="">all</option>{options}</select></label>
 <label>State <select name="state"><option value="">all</option><option value="made">made</option>\
-<option value="found">with findings</option><option value="failed">failed</option></select></label>
+<option value="found">with findings</option><option value="hinted">to look at</option>\
+<option value="failed">failed</option></select></label>
 <span id="shown" role="status"></span>
 </form>
 <table>
@@ -151,7 +153,7 @@ def _written(name: str, value: float) -> str:
 
 def _row(row: Row, measures: Sequence[str]) -> str:
     about = row.about
-    state = "failed" if row.error else " ".join(["made", *(["found"] if row.findings else [])])
+    state = "failed" if row.error else " ".join(["made", *_kinds(row.findings)])
     words = " ".join([row.title, row.error, *row.findings]).lower()
     part = f"<small>{escape(about['part'])}</small>" if about["part"] else ""
     cells = [
@@ -173,6 +175,12 @@ def _row(row: Row, measures: Sequence[str]) -> str:
         cells.append(f"<td>{f'<ul>{items}</ul>' if items else ''}</td>")
     data = f'data-state="{state}" data-variant="{escape(about["variant"])}" data-text="{escape(words)}"'
     return f"<tr {data}>{''.join(cells)}</tr>\n"
+
+
+def _kinds(findings: Sequence[str]) -> list[str]:
+    """Return whether there are findings, and whether there are hints: they are counted apart."""
+    hints = sum(each.startswith(HINT) for each in findings)
+    return ["found"] * (len(findings) > hints) + ["hinted"] * (hints > 0)
 
 
 def _image(path: str, link: str = "", title: str = "exemplar") -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.reading import KEY
 from texlab_core.documents.recipe import recipe_json
+from texlab_core.findings.diagnosis import findings_of
 from texlab_core.images.formats.volumes import encode_volume
 from texlab_core.images.formats.writing import encode_image, encode_png, quantize
 from texlab_core.measures.registry import measure_all, measure_quick
@@ -85,6 +86,7 @@ def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None =
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
         measures=dict(taken),
+        findings=tuple(each.sentence for each in findings_of(result, _prepared())),
         notes=result.notes,
     )
 

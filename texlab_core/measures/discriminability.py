@@ -161,7 +161,8 @@ def nearest_blocks(
     return np.sqrt(nearest)
 
 
-def _described(subject: Subject) -> tuple[Looks, PreparedLooks] | None:
+def described(subject: Subject) -> tuple[Looks, PreparedLooks] | None:
+    """Return the looks of picture and exemplar; None without an exemplar, or where one is under 40 pixels."""
     if subject.exemplar is None or min(*subject.image.shape[:2], *subject.pixels.shape[:2]) < SMALLEST:
         return None
     exemplar = subject.prepared("looks", prepare)
@@ -170,17 +171,21 @@ def _described(subject: Subject) -> tuple[Looks, PreparedLooks] | None:
 
 def magnitude_difference(subject: Subject) -> float | None:
     """Return m: the RMS difference of the magnitude autocorrelations in the finest octave."""
-    found = _described(subject)
+    found = described(subject)
     return None if found is None else math.sqrt(float(np.mean(np.square(found[0].lags - found[1].lags))))
 
 
 def block_distance(subject: Subject) -> float | None:
     """Return b: the mean distance of the image's blocks to the nearest block of the exemplar."""
-    found = _described(subject)
+    found = described(subject)
     if found is None:
         return None
-    distances = subject.once("nearest-blocks", lambda: nearest_blocks(found[0].blocks, found[1], subject.look))
-    return float(distances.mean())
+    return float(distances(subject, *found).mean())
+
+
+def distances(subject: Subject, picture: Looks, exemplar: PreparedLooks) -> NDArray[np.float64]:
+    """Return the distance of each block of the picture to the exemplar's nearest one, row by row."""
+    return subject.once("nearest-blocks", lambda: nearest_blocks(picture.blocks, exemplar, subject.look))
 
 
 def discriminability(subject: Subject) -> float | None:

@@ -9,7 +9,7 @@ from texlab_core.stats.spectrum import log_spectral_distance, power_spectrum, to
 
 if TYPE_CHECKING:
     from texlab_core.measures.subject import Subject
-    from texlab_core.stats.peaks import Shift
+    from texlab_core.stats.peaks import Peak, Shift
     from texlab_core.stats.spectrum import Spectrum
 
 PEAKS = 5
@@ -31,8 +31,8 @@ def _variation(subject: Subject) -> float:
     return total_variation(*spectra(subject))
 
 
-def peak_shifts(subject: Subject) -> tuple[tuple[float, Shift], ...]:
-    """Return for each strong peak of the exemplar its share of the variance and how far the nearest one moved."""
+def moved_peaks(subject: Subject) -> tuple[tuple[Peak, Shift], ...]:
+    """Return each strong peak of the exemplar, the strongest first, with how far the nearest one has moved."""
     from texlab_core.stats.peaks import find_peaks, match_peaks
 
     exemplar, image = spectra(subject)
@@ -40,7 +40,12 @@ def peak_shifts(subject: Subject) -> tuple[tuple[float, Shift], ...]:
     subject.look()
     other = subject.once("peaks", lambda: find_peaks(image, 2 * PEAKS))
     subject.look()
-    return tuple((peak.share, shift) for peak, _, shift in match_peaks(own, other))
+    return tuple((peak, shift) for peak, _, shift in match_peaks(own, other))
+
+
+def peak_shifts(subject: Subject) -> tuple[tuple[float, Shift], ...]:
+    """Return for each strong peak of the exemplar its share of the variance and how far the nearest one moved."""
+    return tuple((peak.share, shift) for peak, shift in moved_peaks(subject))
 
 
 def _octaves(subject: Subject) -> float | None:

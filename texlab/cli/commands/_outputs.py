@@ -85,10 +85,14 @@ def _foretold(job: Job) -> str:
 def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
     """Return what was made as JSON data."""
     from texlab_core.documents.record import summary
+    from texlab_core.findings.diagnosis import findings_of
     from texlab_core.measures.registry import measure_all
-    from texlab_core.measures.subject import Subject
+    from texlab_core.measures.subject import PreparedCache, Subject
 
-    return summary(result, outputs.image, measure_all(Subject.of_result(result, should_stop=interrupted)))
+    cache = PreparedCache()
+    measures = measure_all(Subject.of_result(result, cache, interrupted))
+    findings = [each.to_json() for each in findings_of(result, cache, interrupted)]
+    return summary(result, outputs.image, measures) | {"findings": findings}
 
 
 def described(result: Result, outputs: Outputs) -> str:

@@ -1,0 +1,1 @@
+"""The detectors: every file registers its own."""

@@ -1,0 +1,28 @@
+"""What ``python -m texlab_core.findings.calibrate LABELS --write`` found; not to be changed by hand."""
+
+from __future__ import annotations
+
+# By rule: weights, limit, precision, recall, labelled results, how many of them show it.
+NUMBERS: dict[str, tuple[tuple[float, ...], float, float, float, int, int]] = {
+    "structure-lost.bands-alone": ((1.0,), -2.5544, 1.0, 0.881, 102, 101),
+    "structure-lost": ((1.0,), -2.0803, 0.937, 0.465, 459, 254),
+    "dependence-lost.bands-alone": ((1.0,), -2.4412, 1.0, 0.703, 102, 101),
+    "cuts.de-bonet": ((1.7855, 1.0346, 4.5284, 0.89134), 2.6322, 0.922, 0.804, 204, 148),
+    "cuts": ((1.0158, 0.30771, 8.2746), 10.172, 0.773, 0.784, 459, 148),
+    "repetition": ((6.7697, -2.1264), 3.8531, 0.798, 0.906, 459, 170),
+    "verbatim.de-bonet": ((-1.0,), 0.81732, 0.91, 0.841, 204, 132),
+    "verbatim.efros-leung": ((-1.0,), 1.0002, 0.55, 0.333, 153, 33),
+    "verbatim": ((-4.4826, 1.9835), 6.0187, 0.912, 0.63, 459, 165),
+    "noise.de-bonet": ((5.1733, 1.4301, 1.2773, 0.22595), -15.584, 0.908, 0.711, 204, 83),
+    "noise": ((1.0,), -2.5181, 0.556, 0.054, 459, 93),
+    "jagged": ((0.95731, 0.5526), -2.3397, 0.357, 0.172, 459, 29),
+    "invented-colours.histograms": ((1.0,), -0.67398, 0.759, 0.957, 51, 23),
+    "invented-colours": ((1.0,), 2.1929, 0.357, 0.167, 459, 30),
+    "blotchy.histograms": ((1.4493, 7.504), -2.523, 0.824, 0.609, 51, 23),
+    "garbage.efros-leung": ((2.1403, -2.0923), 4.4396, 0.789, 0.294, 153, 51),
+    "smear": ((1.0918, 0.62493, 1.4365), -4.9186, 0.514, 0.224, 357, 85),
+    "peaks-moved": ((1.0,), 0.49801, 0.462, 0.182, 459, 33),
+    "symmetry": ((1.0,), 0.6055, 0.389, 0.28, 459, 25),
+    "letters": ((1.0,), 0.92163, 1.0, 0.529, 459, 34),
+    "gradient": ((1.0,), 0.51354, 0.667, 0.444, 459, 27),
+}
