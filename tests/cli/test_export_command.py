@@ -13,7 +13,13 @@ import pypdf
 import pytest
 from PIL import Image
 
+from texlab_core.documents.project import Project, ProjectColumn, save_project
 from texlab_core.documents.record import read_recipe
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import Job
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import run
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import write_image
 
@@ -78,6 +84,24 @@ def test_an_image_and_a_method(texlab: Texlab) -> None:
     recipe = read_recipe("one.webp")
     assert recipe.params.to_json()["iterations"] == 2
     assert b"VP8 " in Path("one.webp").read_bytes()[:60]
+
+
+def test_the_columns_of_a_project(saved: Texlab) -> None:
+    exemplar = as_exemplar("deep.png")
+    columns = tuple(ProjectColumn(name, find_method(name).params()) for name in ("pixels", "tiling"))
+    save_project("a.texlab", Project(exemplar, columns, crop=Crop(0, 0, 20, 20), seed=9, size=(24, 24)))
+    done = saved("export", "a.texlab", "--out", "made", "--name", "{method}")
+    assert (done.code, done.err) == (0, "")
+    assert sorted(os.listdir("made")) == ["pixels.png", "tiling.png"]
+    part = as_exemplar(exemplar, crop=Crop(0, 0, 20, 20))
+    wanted = run(Job(method="pixels", inputs={"exemplar": part}, size=(24, 24), seed=9)).image
+    found = read_image(Path("made/pixels.png"), "a")
+    np.testing.assert_array_equal(found.values, np.rint(wanted.astype(np.float64) * found.peak))
+    save_project("b.texlab", Project(exemplar, ()))
+    done = saved("export", "b.texlab", "--out", "made")
+    assert (done.code, "has no columns" in done.err) == (2, True)
+    Path("b.texlab").write_bytes(b"PK")
+    assert saved("export", "b.texlab", "--out", "made").code == 2
 
 
 def test_a_figure_of_a_selection(saved: Texlab) -> None:

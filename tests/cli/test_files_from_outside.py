@@ -24,6 +24,7 @@ from texlab_core.batch.choices import _lines as batch_lines
 from texlab_core.batch.plan import read_plan
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.documents.presets import read_preset
+from texlab_core.documents.project import read_project
 from texlab_core.documents.record import read_recipe
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
@@ -118,6 +119,7 @@ READERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
     "code": ("a.msg.json", read_code),
     "code as an input": ("a.msg.json", load_code_input),
     "sweep": ("a.json", lambda path: find_sweep(str(path))),
+    "project": ("a.texlab", read_project),
     "sheet": ("a.png", lambda path: find_sweep(str(path))),
     "image": ("a.png", as_exemplar),
     "index of maps": (maps.INDEX, read_index),

@@ -204,6 +204,20 @@ def test_a_large_source_leaves_its_pixels(tmp_path, photograph):
         assert recipe.job(given_image).inputs["exemplar"].sha256 == exemplar.sha256
 
 
+def test_the_part_that_was_used_may_be_larger_and_what_is_kept_is_said(tmp_path):
+    photograph = levels(height=1100, width=1000, seed=4)
+    exemplar = as_exemplar(photograph, name="photo.png", crop=Crop(10, 20, 1000, 900))
+    notes = save_result(result_of(exemplar), tmp_path / "out.png")
+    assert notes == (
+        "The file keeps the 900 x 1000 pixels that were used of photo.png, whose whole is too large for it.",
+    )
+    recipe = read_recipe(tmp_path / "out.png")
+    assert recipe.job().inputs["exemplar"].sha256 == exemplar.sha256
+    notes = save_result(result_of(as_exemplar(photograph, name="photo.png")), tmp_path / "out.png")
+    assert notes == ("The exemplar photo.png is too large to be kept in the file: keep it beside.",)
+    assert save_result(result_of(as_exemplar(levels())), tmp_path / "out.png") == ()
+
+
 def test_what_fits_nowhere_leaves_name_and_hash(tmp_path, photograph):
     exemplar = as_exemplar(photograph, name="photo.png")
     result = result_of(exemplar)

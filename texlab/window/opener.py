@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from texlab.state.changes import Opened, fitting, restored, sample_of, with_code, with_crop_of
 from texlab.state.session import Sample, Session
@@ -120,13 +120,12 @@ class Opener:
     def save(self, result: Result, path: str) -> None:
         """Save a result with its recipe."""
 
-        def work(task: Task) -> str:
+        def work(task: Task) -> tuple[str, ...]:
             from texlab_core.documents.record import save_result
 
-            save_result(result, path)
-            return path
+            return save_result(result, path)
 
-        def done(saved: Any) -> None:
-            self._controller.said.emit(f"Saved {saved} with its recipe.")
+        def done(notes: tuple[str, ...]) -> None:
+            self._controller.said.emit(" ".join((f"Saved {path} with its recipe.", *notes)))
 
         self._controller.once("save", work, done)

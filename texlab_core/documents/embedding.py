@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 MAX_EMBEDDED = 2 * 2**20
 """Longest encoding of an input that is embedded, in bytes before base64."""
+MAX_USED = 8 * 2**20
+"""The same for what was used of an exemplar, its crop at its scale, where the whole is not embedded."""
 MAX_UNPACKED = 256 * 2**20
 """Most bytes that packed numbers may unpack to."""
 MAX_DATA_DEPTH = 24
@@ -35,17 +37,24 @@ _BAND = 64
 _BLOCK = 2**20
 
 
-def embed(given: Input) -> dict[str, Any]:
-    """Return a JSON object that describes an input, and holds it when its encoding has at most 2 MB.
+def embed(given: Input, *, limit: int = MAX_EMBEDDED, used: int = MAX_EMBEDDED) -> dict[str, Any]:
+    """Return a JSON object that describes an input, and holds it when its encoding is not too long.
 
-    An image is kept as its whole source if that fits, otherwise as the pixels that were used.
+    Parameters
+    ----------
+    given
+        An image is kept as its whole source if that fits, otherwise as the pixels that were used: its crop at its
+        scale.
+    limit, used
+        Longest encoding in bytes, before base64, of a whole source (arrays, a document), and of what was used of
+        a larger one.
     """
     entry: dict[str, Any] = {"name": given.name, "sha256": given.sha256}
     if isinstance(given, ImageInput):
-        return entry | _embed_image(given)
+        return entry | _embed_image(given, limit, used)
     if isinstance(given, ArraysInput):
         entry["kind"] = "arrays"
-        if (packed := _pack_arrays(given.arrays)) is not None:
+        if (packed := _pack_arrays(given.arrays, limit)) is not None:
             entry["arrays"] = packed
         return entry
     entry["kind"] = "data"
@@ -54,7 +63,7 @@ def embed(given: Input) -> dict[str, Any]:
     return entry
 
 
-def _embed_image(given: ImageInput) -> dict[str, Any]:
+def _embed_image(given: ImageInput, limit: int, used: int) -> dict[str, Any]:
     height, width = given.size
     origin = given.origin
     crop = None if origin is None else origin.crop
@@ -71,14 +80,39 @@ def _embed_image(given: ImageInput) -> dict[str, Any]:
         scale, part = origin.taken
         entry["taken"] = {"scale": scale, "crop": _rectangle(part)}
     alpha = given.alpha
-    if origin is not None and (packed := pack_pixels(origin.pixels)) is not None:
+    # A picture that was used whole is the file that the user has.
+    is_part = origin is not None and (origin.scale != 1 or origin.crop is not None or origin.taken is not None)
+    if origin is not None and (packed := pack_pixels(origin.pixels, limit)) is not None:
         entry["source"] = packed
         alpha = origin.alpha
-    elif (packed := pack_pixels(given.pixels)) is not None:
+    elif (packed := pack_pixels(given.pixels, used if is_part else limit)) is not None:
         entry["pixels"] = packed
-    if alpha is not None and (packed := pack_pixels(alpha)) is not None:
+    if alpha is not None and (packed := pack_pixels(alpha, limit)) is not None:
         entry["alpha"] = packed
     return entry
+
+
+def kept_notes(inputs: Mapping[str, Mapping[str, Any]]) -> tuple[str, ...]:
+    """Return one sentence for each image that a recipe does not hold whole.
+
+    Parameters
+    ----------
+    inputs
+        What :func:`embed` made, by role.
+    """
+    notes = []
+    for role, entry in inputs.items():
+        if entry["kind"] != "image" or "source" in entry:
+            continue
+        if "pixels" not in entry:
+            notes.append(f"The {role} {entry['name']} is too large to be kept in the file: keep it beside.")
+        elif entry["scale"] != 1 or entry["crop"] is not None or "taken" in entry:
+            width, height = entry["size"]["width"], entry["size"]["height"]
+            notes.append(
+                f"The file keeps the {width} x {height} pixels that were used of {entry['name']}, whose whole is "
+                "too large for it."
+            )
+    return tuple(notes)
 
 
 def _rectangle(crop: Crop | None) -> dict[str, int] | None:
@@ -87,17 +121,17 @@ def _rectangle(crop: Crop | None) -> dict[str, int] | None:
     return {"top": crop.top, "left": crop.left, "height": crop.height, "width": crop.width}
 
 
-def pack_pixels(pixels: FloatImage) -> dict[str, Any] | None:
-    """Return the pixels, losslessly encoded, or None when that takes more than 2 MB.
+def pack_pixels(pixels: FloatImage, limit: int = MAX_EMBEDDED) -> dict[str, Any] | None:
+    """Return the pixels, losslessly encoded, or None when that takes more than ``limit`` bytes (2 MB).
 
     An 8-bit PNG when every value is k / 255, a 16-bit one when every value is k / 65535, else packed float32.
     """
     for peak in (255, 65535):
         values = quantize(pixels, peak)
         if _same_bits(np.divide(values, np.float32(peak), dtype=np.float32), pixels):
-            png = _small_png(values)
+            png = _small_png(values, limit)
             return None if png is None else {"encoding": "png", "base64": _text(png)}
-    packed = _deflate(pixels.astype("<f4", copy=False))
+    packed = _deflate(pixels.astype("<f4", copy=False), limit)
     if packed is None:
         return None
     return {"encoding": "float32", "shape": list(pixels.shape), "base64": _text(packed)}
@@ -167,20 +201,20 @@ def _decode_png(data: bytes, name: str) -> FloatImage:
     return pixels
 
 
-def _small_png(values: NDArray[Any]) -> bytes | None:
-    if values.nbytes > 16 * MAX_EMBEDDED:
+def _small_png(values: NDArray[Any], limit: int) -> bytes | None:
+    if values.nbytes > 16 * limit:
         # Do not encode a large photograph only to find that it is large.
         middle = values.shape[0] // 2
         band = values[max(0, middle - _BAND // 2) : middle + _BAND // 2]
-        if len(encode_png(band, srgb=False)) * values.shape[0] / band.shape[0] > 4 * MAX_EMBEDDED:
+        if len(encode_png(band, srgb=False)) * values.shape[0] / band.shape[0] > 4 * limit:
             return None
     png = encode_png(values, srgb=False)
-    return png if len(png) <= MAX_EMBEDDED else None
+    return png if len(png) <= limit else None
 
 
-def _pack_arrays(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any] | None:
+def _pack_arrays(arrays: Mapping[str, NDArray[Any]], limit: int) -> dict[str, Any] | None:
     found: dict[str, Any] = {}
-    left = MAX_EMBEDDED
+    left = limit
     if sum(array.nbytes for array in arrays.values()) > MAX_UNPACKED:
         return None
     for key, array in arrays.items():

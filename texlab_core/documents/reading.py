@@ -235,14 +235,15 @@ def _inputs(data: dict[str, Any], method: Method) -> Mapping[str, RecipeInput]:
             raise RecipeError(f"{method.title} takes no input {role!r:.40}, only {', '.join(specs)}.")
         if not isinstance(entry, dict):
             raise RecipeError(f"the input {role} must be an object, got {entry!r:.40}.")
-        found[role] = _input(role, entry, specs[role].kind)
+        found[role] = parse_input(role, entry, specs[role].kind)
     for spec in method.inputs:
         if spec.required and spec.name not in found:
             raise RecipeError(f"the input {spec.name} is missing.")
     return frozen_mapping(found)
 
 
-def _input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
+def parse_input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
+    """Return one input as a recipe or a project has it; raises ``RecipeError`` when it is malformed."""
     if _get(entry, "kind", str) != kind:
         raise RecipeError(f"the input {role} must be of kind {kind}, got {entry['kind']!r:.40}.")
     name, sha256 = _get(entry, "name", str), _get(entry, "sha256", str)

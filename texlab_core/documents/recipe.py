@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.documents.embedding import embed, unpack_arrays, unpack_pixels
+from texlab_core.documents.embedding import MAX_EMBEDDED, MAX_USED, embed, unpack_arrays, unpack_pixels
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import versions
@@ -255,5 +255,9 @@ def recipe_json(result: Result) -> dict[str, Any]:
         "size": size_to_json(job.size),
         "seed": job.seed,
         "versions": dict(result.versions),
-        "inputs": {role: embed(each) for role, each in job.inputs.items()},
+        # One of them may be larger, so that all together stay within what is read.
+        "inputs": {
+            role: embed(each, used=MAX_USED if role == "exemplar" else MAX_EMBEDDED)
+            for role, each in job.inputs.items()
+        },
     }

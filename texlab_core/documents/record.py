@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.documents.beside import sidecar, write_with_recipe
+from texlab_core.documents.embedding import kept_notes
 from texlab_core.documents.reading import KEY, read_recipe
 from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
 from texlab_core.engine.inputs import ImageInput
@@ -48,12 +49,12 @@ def save_result(
     maps: str | os.PathLike[str] | None = None,
     spare: Iterable[str | os.PathLike[str]] = (),
     quality: int | None = None,
-) -> None:
+) -> tuple[str, ...]:
     """Save a result's image, or its volume, with its recipe, and its maps: all of it or nothing.
 
     A PNG has the recipe as a text chunk, a TIFF as its description (a stack as ImageJ's info), a JPEG in
     application segments, a WebP in a chunk, and a .npy, AVIF or JPEG XL in a file ``.texlab.json`` beside it. The
-    recipe holds every input up to 2 MB.
+    recipe holds every input up to 2 MB, or what was used of the exemplar up to 8 MB.
 
     Parameters
     ----------
@@ -72,6 +73,11 @@ def save_result(
     quality
         1 to 100, for formats that can lose something; see :func:`encode_image`.
 
+    Returns
+    -------
+    tuple of str
+        A sentence for each input that the recipe does not hold whole.
+
     Raises
     ------
     ImageError
@@ -81,7 +87,9 @@ def save_result(
     """
     bits = result_bits(result, path) if bits is None else bits
     suffix = check_result_format(path, bits, len(result.job.size))
-    recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
+    held = recipe_json(result)
+    recipe = json.dumps(held, separators=(",", ":"), allow_nan=False)
+    notes = kept_notes(held["inputs"])
     made = {} if maps is None else map_files(result, Path(maps), spare=[path, sidecar(path), *spare])
     data = encode_result(result, path, bits=bits, alpha=alpha, quality=quality, recipe=recipe)
     if not holds_recipe(suffix):
@@ -89,12 +97,13 @@ def save_result(
         write_with_recipe(path, data, recipe)
         if maps is not None:
             save_maps(result, maps)
-        return
+        return notes
     if maps is None:
         write_together({Path(path): data})
-        return
+        return notes
     with made_folder(Path(maps)):
         write_together({Path(path): data} | made, manifest=unfinished(made))
+    return notes
 
 
 def holds_recipe(path: str | os.PathLike[str]) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._options import output_file, output_folder
@@ -67,8 +67,8 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
         result = run(job, show, interrupted)
     flat = result.volume is None and can_hold_alpha(outputs.image)
     alpha = carried_alpha(result) if flat else None
-    save_result(result, outputs.image, bits=outputs.bits, alpha=alpha, maps=outputs.maps, spare=keep)
-    return result
+    kept = save_result(result, outputs.image, bits=outputs.bits, alpha=alpha, maps=outputs.maps, spare=keep)
+    return replace(result, notes=(*result.notes, *kept))
 
 
 def _foretold(job: Job) -> str:

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.job import Job
     from texlab_core.sheets.export import Export, Item
 
+PROJECT_SUFFIX = ".texlab"
 HELP = "Write results of any seeds and sizes as files, a figure or an animation."
 ORDER = 14
 NOTES = """
@@ -42,6 +43,7 @@ four seeds at two sizes:           texlab export wall.png --out made/ --seeds 1.
 as deep as the exemplar, as TIFF:  texlab export wall.png --out made/ --format tif
 from an image:                     texlab export wall.jpg --method de-bonet --out made/ --seeds 1..9
 names, shown and not written:      texlab export wall.png --out made/ --name "{name}-{seed}" --seeds 1..4 --preview
+all columns of a project:          texlab export work.texlab --out made/
 a figure for print:                texlab export wall.png --out wall.pdf --seeds 1..6 --columns 3 --width-cm 8.5
 a growth, a drag of a knob:        texlab export wall.png --out grow.webp --animate growth
                                    texlab export wall.png --out drag.gif --animate alpha=0.05:0.3:24
@@ -53,7 +55,7 @@ def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.epilog = NOTES
     parser.add_argument(
-        "sources", nargs="+", metavar="RESULT|IMAGE", help="results that TexLab saved; with --method one exemplar"
+        "sources", nargs="+", metavar="RESULT|PROJECT|IMAGE", help="what TexLab saved; with --method one exemplar"
     )
     parser.add_argument("--out", required=True, metavar="DIR|FILE", help="folder to write to, or one file")
     parser.add_argument("--seeds", metavar="N..M,K", help="seeds to make (default: each result's own)")
@@ -128,6 +130,9 @@ def _base(args: argparse.Namespace) -> list[Item]:
         raise InputError(f"{wrong[0]} needs --method ID; a result is made again as it was.")
     found = []
     for source in args.sources:
+        if source.lower().endswith(PROJECT_SUFFIX):
+            found += _columns(source)
+            continue
         try:
             found.append(Item(read_recipe(source).job()))
         except NoRecipeError as error:
@@ -135,6 +140,17 @@ def _base(args: argparse.Namespace) -> list[Item]:
     if len({len(item.job.size) for item in found}) > 1:
         raise InputError("Pictures and solids are exported one kind at a time.")
     return found
+
+
+def _columns(source: str) -> list[Item]:
+    """Return the columns of a project."""
+    from texlab_core.documents.project import read_project
+    from texlab_core.sheets.export import Item
+
+    project = read_project(source)
+    if not project.columns:
+        raise InputError(f"The project {source} has no columns.")
+    return [Item(project.job(place), column.title) for place, column in enumerate(project.columns)]
 
 
 def _job(args: argparse.Namespace) -> Job:
