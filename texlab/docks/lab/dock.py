@@ -95,6 +95,11 @@ class LabDock(Dock):
 
     # The contract of docks: what the chosen experiment says.
 
+    @property
+    def message(self) -> str | None:
+        """The sentence that is shown instead of the chosen experiment, or None."""
+        return self.page.message
+
     def show_scene(self, scene: Scene) -> None:
         """Show what needs no computing."""
         self.page.show_scene(scene)
