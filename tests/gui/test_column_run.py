@@ -12,6 +12,7 @@ from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
+from texlab_core.findings.registry import find_all
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.registry import measure_all, measure_quick
 from texlab_core.measures.subject import PreparedCache, Subject
@@ -66,7 +67,10 @@ def test_a_result_is_measured_quickly_then_wholly():
     subject = Subject.of_result(result)
     assert found.measures == measure_all(subject)
     assert found.size == (52, 60)
-    assert [each.measures for each in task.reports] == [measure_quick(subject)]
+    # Quick numbers, all numbers, then what is wrong.
+    assert [each.measures for each in task.reports] == [measure_quick(subject), measure_all(subject)]
+    assert [each.findings for each in task.reports] == [(), ()]
+    assert found.findings == find_all(subject, result.job.params)
     assert task.ways >= task.asked > 40
 
 

@@ -12,6 +12,7 @@ import pytest
 from texlab.state import intentions
 from texlab.state.intentions import (
     AskOnce,
+    ChangeMethod,
     ChooseColumn,
     EditField,
     EditInputs,
@@ -116,6 +117,14 @@ def test_a_field_is_set_in_what_the_column_has_by_then(bench: Bench) -> None:
     ]
     # The column has gone while the hand was still moving.
     assert len(bench.do(EditField(99, "iterations", 7))) == 1
+
+
+def test_a_column_gets_another_method_with_its_defaults(bench: Bench) -> None:
+    bench.do(ChangeMethod(2, "efros-leung"))
+    changed = bench.session.state.column(2)
+    assert (changed.method, changed.params) == ("efros-leung", EL.params())  # type: ignore[union-attr]
+    assert bench.chosen == [2]
+    assert bench.session.undo_text == "method efros-leung"
 
 
 def test_pixels_and_marks(bench: Bench) -> None:

@@ -38,6 +38,10 @@ class Background:
         self.problems: list[str] = []
         self.said = SimpleNamespace(emit=self.news.append)
         self.waiting: list[Callable[[], None]] = []
+        self.asking = 0
+
+    def ask_first(self) -> None:
+        self.asking += 1
 
     def once(self, name: str, request: Any, done: Any = None, failed: Any = None) -> None:
         def work() -> None:
@@ -124,6 +128,25 @@ def test_the_newest_of_several_wins(bench: Bench, tmp_path: Path) -> None:
     assert bench.sample.source.size == (30, 30)
 
 
+def test_a_failure_of_the_gallery_brings_its_job(bench: Bench) -> None:
+    bench.opener.open_failure("small-thresholds")
+    bench.background.go_on()
+    column = bench.session.selected_column
+    assert (column.method, column.params.alpha) == ("de-bonet", 0.02)
+    assert bench.sample.source.name == "gallery:stochastic-gravel"
+    assert bench.session.state.size == (256, 256)
+    assert bench.background.news[-1].startswith("Thresholds too small: Whole stones")
+    # The newest wins, also over an image.
+    bench.opener.open_failure("rotational-symmetry")
+    bench.opener.open("gallery:oriented-zebra")
+    bench.background.go_on()
+    assert bench.sample.source.name == "gallery:oriented-zebra"
+    bench.opener.open_failure("rotational-symmetry")
+    bench.background.go_on()
+    assert bench.sample.crop == Crop(64, 64, 128, 128)
+    assert bench.session.undo_text == "failure rotational-symmetry"
+
+
 def test_the_first_that_can_be_read_is_opened(bench: Bench, tmp_path: Path) -> None:
     there = picture(tmp_path / "there.png", 20, 24)
     bench.opener.open_first_of([Choice(str(tmp_path / "gone.png")), Choice(str(there), Crop(1, 1, 8, 8), 1.0)])
@@ -148,6 +171,11 @@ def test_a_saved_result_brings_its_job_back(bench: Bench, tmp_path: Path) -> Non
     assert (state.seed, state.size, state.column(1).params) == (77, (16, 20), params)
     assert bench.session.selected_id == 1
     assert bench.recent == []
+    # What a file asks for may be too much; an example of our own is not.
+    assert bench.background.asking == 1
+    bench.opener.open_failure("tiling")
+    bench.background.go_on()
+    assert bench.background.asking == 1
 
 
 def test_a_preset_is_read_once(bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

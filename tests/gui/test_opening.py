@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QMenu
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
+from texlab.docks.findings.dock import FindingsDock
 from texlab.runs.exemplar import prepare
 from texlab.state.changes import restored
 from texlab.state.intentions import Open
@@ -184,3 +185,31 @@ def test_a_dock_can_have_a_texture_opened(qtbot: Any, explorer: Explorer) -> Non
     dock.intention.emit(Open("gallery:oriented-zebra"))
     wait_idle(qtbot, explorer)
     assert explorer.session.state.sample.source.name == "gallery:oriented-zebra"
+
+
+def test_an_example_of_the_failure_gallery_is_opened_from_the_menu(qtbot: Any, explorer: Explorer) -> None:
+    explorer.window.actions_by_name["failures"].trigger()
+    menu = explorer.window.findChild(QMenu, "failures-menu")
+    assert menu is not None
+    qtbot.waitUntil(menu.isVisible)
+    groups = [action.menu() for action in menu.actions()]
+    assert [group.title() for group in groups][:2] == ["Heeger-Bergen", "De Bonet"]
+    chosen = next(each for group in groups for each in group.actions() if each.objectName() == "failure-letters")
+    assert chosen.toolTip()
+    chosen.trigger()
+    menu.close()
+    qtbot.waitUntil(lambda: explorer.session.undo_text == "failure letters", timeout=20_000)
+    assert explorer.session.state.sample.source.name == "gallery:letters-scattered"
+    wait_idle(qtbot, explorer)
+    column = explorer.session.selected_column
+    qtbot.waitUntil(lambda: bool(explorer.controller.column_scene(column.id).findings), timeout=20_000)
+    assert "letters" in {each.id for each in explorer.controller.column_scene(column.id).findings}
+    # The panel shows it as soon as it is looked at.
+    explorer.window.actions_by_name["panel-findings"].trigger()
+    dock = explorer.window.findChild(FindingsDock)
+    qtbot.waitUntil(lambda: dock.message is None, timeout=20_000)
+    rows = [dock.list.item(row).text() for row in range(dock.list.count())]
+    row = rows.index("? Letters or symbols")
+    place = dock.list.visualItemRect(dock.list.item(row)).center()
+    qtbot.mouseClick(dock.list.viewport(), Qt.MouseButton.LeftButton, pos=place)
+    assert "two tones" in dock.text.text()

@@ -9,9 +9,10 @@ from texlab.widgets.status_line import SEPARATOR
 from texlab_core.engine.sizes import size_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from texlab.state.scene import ColumnScene
+    from texlab_core.findings.finding import Finding
 
 # How many numbers are shown at once; the tool tip has all.
 MOST_NUMBERS = 3
@@ -57,8 +58,16 @@ def status_parts(scene: ColumnScene) -> list[str]:
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
     if scene.status == "finished":
+        parts += signs(scene.findings)
         parts += headline(numbers_of(scene))
     return parts
+
+
+def signs(findings: Sequence[Finding]) -> list[str]:
+    """Return how many findings and how many hints there are, each with its sign: they are counted apart."""
+    sure = sum(each.certainty == "finding" for each in findings)
+    hints = len(findings) - sure
+    return ([f"! {sure}"] if sure else []) + ([f"? {hints}"] if hints else [])
 
 
 def numbers_of(scene: ColumnScene) -> dict[str, float]:
@@ -84,4 +93,4 @@ def details(scene: ColumnScene) -> list[str]:
     if lines and scene.measured_size is not None:
         height, width = scene.measured_size
         lines.insert(0, f"Measured at {width} x {height}:")
-    return lines
+    return [each.sentence for each in scene.findings] + lines

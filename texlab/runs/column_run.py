@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.job import Job
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage, Step
+    from texlab_core.findings.finding import Finding
     from texlab_core.measures.subject import PreparedCache
     from texlab_core.warming import Need, Warmth
 
@@ -164,10 +165,11 @@ class ColumnRun:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Numbers about the picture that is shown, by id, and its height and width."""
+    """Numbers about the picture that is shown, by id, its height and width, and what is wrong with it."""
 
     measures: Mapping[str, float]
     size: tuple[int, int]
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +184,7 @@ class MeasureRun:
 
     def __call__(self, task: TaskLike) -> Measured:
         """Measure, reporting the quick numbers first; a measure that fails leaves the picture as it is."""
+        from texlab_core.findings.registry import find_all
         from texlab_core.measures.registry import measure_all, measure_quick, measures
         from texlab_core.measures.subject import Subject
 
@@ -195,17 +198,21 @@ class MeasureRun:
             subject = replace(Subject.of_result(self.result, self.cache), look=look)
         size = (self.image.shape[0], self.image.shape[1])
         found: dict[str, float] = {}
+        findings: tuple[Finding, ...] = ()
         try:
             found = measure_quick(subject)
             if not self.draft:
                 task.progress(Measured(dict(found), size))
                 rest = (each.id for each in measures().values() if not (each.slow or each.live))
                 found |= measure_all(subject, rest)
+                task.progress(Measured(dict(found), size))
+                if self.result is not None and self.result.volume is None:
+                    findings = find_all(subject, self.result.job.params)
         except Cancelled:
             raise
         except Exception:
             log.exception("A picture could not be measured.")
-        return Measured(found, size)
+        return Measured(found, size, findings)
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

@@ -186,6 +186,7 @@ class ColumnRunner(QObject):
                 "frames": self.scene.frames if self.drafted else (),
                 "metrics": {},
                 "measures": self.scene.measures if self.drafted else {},
+                "findings": (),
                 "draft": small,
                 "elapsed_s": 0.0,
             }
@@ -259,7 +260,7 @@ class ColumnRunner(QObject):
     def _finished(self, end: Finished | Drafted | Measured) -> None:
         if isinstance(end, Measured):
             self._measuring, self._measured_s = False, time.monotonic()
-            self._show(measures=end.measures, measured_size=end.size)
+            self._show(measures=end.measures, measured_size=end.size, findings=end.findings)
             return
         self._came(end)
         if not self.worker.behind and self._exemplar is not None:
@@ -273,7 +274,8 @@ class ColumnRunner(QObject):
         status = "waiting" if behind and not self._live else "finished"
         self._live = self._live and behind
         if isinstance(end, Drafted):
-            self._show(status=status, message="", picture=end.picture, image=end.image, result=None, draft=True)
+            shown = {"picture": end.picture, "image": end.image, "result": None, "draft": True, "findings": ()}
+            self._show(status=status, message="", **shown)
             return
         # A draft tells as well how long the full size would take: the time grows with the number of samples.
         drawn = math.prod(end.result.job.size)
@@ -291,6 +293,7 @@ class ColumnRunner(QObject):
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,
             "metrics": end.metrics,
+            "findings": (),
         }
         if not end.draft:
             changes |= {"frames": end.frames, "measures": {}}

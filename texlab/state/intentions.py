@@ -51,6 +51,14 @@ class EditField:
 
 
 @dataclass(frozen=True)
+class ChangeMethod:
+    """Run another method in a column, with its defaults, and choose that column."""
+
+    column_id: int
+    method: str
+
+
+@dataclass(frozen=True)
 class EditInputs:
     """Give a column other further inputs (a code, a mask); ``final`` as in :class:`EditParams`."""
 
@@ -186,6 +194,7 @@ class TakeCell:
 Intention = (
     EditParams
     | EditField
+    | ChangeMethod
     | EditInputs
     | EditSize
     | FillHoles

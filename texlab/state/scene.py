@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.findings.finding import Finding
 
 Status = Literal["idle", "waiting", "running", "finished", "cancelled", "failed"]
 
@@ -57,6 +58,8 @@ class ColumnScene:
     measures
         Numbers about the picture by id, of the registry of measures; those of a control that is dragged may be
         about the picture before.
+    findings
+        What is wrong with the finished picture, once that was looked into.
     measured_size
         Height and width of the picture that they are about.
     elapsed_s
@@ -83,6 +86,7 @@ class ColumnScene:
     frames: tuple[Frame, ...] = ()
     metrics: Mapping[str, float] = field(default_factory=dict)
     measures: Mapping[str, float] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
     measured_size: tuple[int, int] | None = None
     elapsed_s: float = 0.0
     resumable: bool = False

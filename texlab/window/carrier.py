@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 from texlab.state.changes import with_cell
 from texlab.state.intentions import (
     AskOnce,
+    ChangeMethod,
     ChooseColumn,
     EditField,
     EditInputs,
@@ -70,6 +71,9 @@ class Carrier:
                 column = session.state.column(column_id)
                 if column is not None:
                     controller.edit_params(column_id, column.params.replace(**{field: value}), field, final)
+            case ChangeMethod(column_id, method):
+                session.set_method(column_id, method, find_method(method).params())
+                self._choose(column_id)
             case EditInputs(column_id, inputs, text, final):
                 controller.edit_inputs(column_id, inputs, text, final)
             case EditSize(column_id, size):

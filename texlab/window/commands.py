@@ -56,6 +56,7 @@ COMMANDS = (
     Command("&Help", "help", "&Help", "F1", "Explain the chosen method"),
     Command("&Help", "help-window", "The &window", "", "Explain the window"),
     Command("&Help", "shortcuts", "&Keyboard", "", "List the keys"),
+    Command("&Help", "failures", "Failure &gallery ...", "", "Open an example of what the papers say fails"),
     Command("&Help", "about", "&About TexLab", "", "Version and licence"),
 )
 

@@ -6,7 +6,7 @@ import secrets
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, Qt, QTimer
+from PySide6.QtCore import QObject, QPoint, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
 from texlab.widgets.plain import set_tip
@@ -15,6 +15,7 @@ from texlab.window.toolbar import LAYOUTS
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
+from texlab_core.findings.failures import examples
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.sheets.comparison import FIG_8, FIRST_SIGHT
 
@@ -111,6 +112,7 @@ class Handlers(QObject):
             "help": lambda: desk.show_help(self._chosen_method()),
             "help-window": lambda: desk.show_help("window"),
             "shortcuts": lambda: desk.show_help("shortcuts"),
+            "failures": self.choose_failure,
             "about": desk.show_about,
         }
         for name in self._to_column:
@@ -178,6 +180,25 @@ class Handlers(QObject):
 
     def _add_column(self, method: str, _: bool = False) -> None:
         self.select(self._session.add_column(method, methods()[method].params()))
+
+    def choose_failure(self) -> None:
+        """Offer the failures that the papers name, by method, then open the chosen one."""
+        menu = QMenu(self._window)
+        menu.setObjectName("failures-menu")
+        groups: dict[str, QMenu] = {}
+        for example in examples().values():
+            if example.method not in groups:
+                group = groups[example.method] = menu.addMenu(methods()[example.method].title)
+                group.setToolTipsVisible(True)
+            action = groups[example.method].addAction(example.title)
+            action.setObjectName(f"failure-{example.name}")
+            set_tip(action, f"{example.look} {example.why}")
+            action.triggered.connect(partial(self._open_failure, example.name))
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.popup(self._window.mapToGlobal(QPoint(self._window.width() // 3, 60)))
+
+    def _open_failure(self, name: str, _: bool = False) -> None:
+        self._opener.open_failure(name)
 
     def _chosen_method(self) -> str:
         column = self._session.selected_column

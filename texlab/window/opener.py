@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from texlab.state.changes import Opened, fitting, restored, sample_of, with_code, with_crop_of
 from texlab.state.session import Sample, Session
 from texlab.storage.reading import Choice, Document, is_document, open_document, open_source
+from texlab_core.engine.inputs import ImageInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from texlab.runs.worker import Task
     from texlab.storage.settings import Settings
     from texlab_core.documents.presets import Preset
-    from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.result import Result
 
 
@@ -62,6 +62,38 @@ class Opener:
 
         self._controller.once("open", work, done, failed)
 
+    def open_failure(self, name: str) -> None:
+        """Open an example of the failure gallery: its exemplar, method, parameters, size and seed."""
+        self._newest += 1
+        number = self._newest
+
+        def work(task: Task) -> Opened:
+            from texlab_core.findings.failures import find_example
+
+            example = find_example(name)
+            job = example.job(should_stop=task.should_stop)
+            image = job.inputs["exemplar"]
+            assert isinstance(image, ImageInput)
+            return Opened(image, None, job)
+
+        def done(opened: Opened) -> None:
+            from texlab_core.findings.failures import find_example
+
+            if number != self._newest:
+                return
+            self._restore(opened, f"failure {name}")
+            example = find_example(name)
+            self._controller.said.emit(f"{example.title}: {example.look}")
+
+        self._controller.once("open-failure", work, done)
+
+    def _restore(self, opened: Opened, text: str) -> None:
+        first = self._session.state.sample is None
+        state, column_id = restored(self._session.state, opened)
+        self._session.apply(state, text)
+        self._session.select(column_id)
+        self._forget_start(first)
+
     def _open_document(self, path: str) -> None:
         def work(task: Task) -> Document:
             return open_document(path)
@@ -81,11 +113,8 @@ class Opener:
     def _take(self, opened: Opened, choice: Choice) -> None:
         first = self._session.state.sample is None
         if opened.job is not None:
-            state, column_id = restored(self._session.state, opened)
             self._controller.ask_first()
-            self._session.apply(state, "restore a result")
-            self._session.select(column_id)
-            self._forget_start(first)
+            self._restore(opened, "restore a result")
             self._controller.said.emit("The saved result's exemplar, parameters, size and seed were restored.")
             return
         if opened.path is not None:
