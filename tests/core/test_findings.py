@@ -23,6 +23,7 @@ from texlab_core.findings.finding import FINDING, LOOK_AT, Finding, Region, Reme
 from texlab_core.findings.limits import PRECISION, RECALL, RULES, Fit, Rule, Term, rule_for
 from texlab_core.findings.registry import Case, Detector, Seen, detectors, failures, find_all, find_detector
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.measures.cuts import largest_cut_between
 from texlab_core.measures.registry import find_measure
 from texlab_core.measures.subject import PreparedCache, Subject
 
@@ -148,6 +149,21 @@ def test_a_tiling_repeats_and_is_cut_where_it_is_laid_together() -> None:
         *(Region(95, left, 2, 96) for left in (0, 96)),
         *(Region(top, 95, 96, 2) for top in (0, 96)),
     )
+
+
+def test_a_cut_is_where_copies_meet_though_other_lines_jump_more() -> None:
+    """Bricks have joints that jump more than any cut; the labelled cuts are in the middle."""
+    shift = methods()["de-bonet"].params(coarsest="shift", alpha=0.3)
+    found = seen(labelled("quasiperiodic-brick", "de-bonet-30", "de-bonet"), shift)["cuts"].where.regions[0]
+    assert 127 in (found.top, found.left)
+    rows = np.linspace(0.2, 0.4, 96, dtype=np.float32)
+    exemplar = np.repeat(rows[:, None, None], 80, axis=1) + np.random.default_rng(1).random((96, 80, 1)) * 0.02
+    subject = Subject.of_images(exemplar.astype(np.float32), np.tile(exemplar, (2, 1, 1)).astype(np.float32))
+    cut = largest_cut_between(subject)
+    assert cut is not None
+    assert (cut.axis, cut.line) == ("row", 95)
+    assert cut.value == pytest.approx(find_measure("cuts").of(subject))
+    assert largest_cut_between(Subject.of_images(exemplar, exemplar)) is None
 
 
 def test_the_exemplar_itself_is_no_failure() -> None:
@@ -302,3 +318,18 @@ def test_rules() -> None:
         assert found is not None
         assert found.name == name
     assert rule_for("garbage", "msg") is None
+
+
+def test_a_batch_says_what_it_finds_and_counts_hints_apart() -> None:
+    from texlab_core.batch.page import _kinds
+    from texlab_core.batch.pictures import finish
+
+    exemplar = as_exemplar("gallery:stochastic-gravel", crop=Crop(0, 0, 64, 64))
+    result = run(Job(method="tiling", inputs={"exemplar": exemplar}, size=(128, 128)))
+    picture = finish(result)
+    assert picture.findings == tuple(each.sentence for each in findings_of(result))
+    assert picture.findings
+    assert _kinds(("It jumps.", "Look at this: it repeats.")) == ["found", "hinted"]
+    assert _kinds(("Look at this: it repeats.",)) == ["hinted"]
+    assert _kinds(("It jumps.",)) == ["found"]
+    assert _kinds(()) == []

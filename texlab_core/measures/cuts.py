@@ -111,6 +111,28 @@ def _largest(image: FloatImage, exemplar: dict[str, tuple[float, float]], look: 
     return max(found, key=lambda cut: cut.value)
 
 
+def largest_cut_between(subject: Subject) -> Cut | None:
+    """Return the line that stands out most among those where blocks as large as the exemplar would meet.
+
+    None where the picture has no such line, or picture or exemplar are under 16 pixels wide or high.
+    """
+    sides = dict(zip(("row", "column"), subject.pixels.shape[:2], strict=True))
+    if min(*subject.image.shape[:2], *sides.values()) < SMALLEST:
+        return None
+    exemplar = subject.prepared("lines", usual)
+    parts: tuple[Part, ...] = ("whole", "first half", "second half")
+    found = []
+    for axis, values in _both(subject.image, subject.look):
+        lines = np.arange(sides[axis] - 1, values.shape[1], sides[axis])
+        if not lines.size:
+            continue
+        middle, deviation = exemplar[axis]
+        place, line = np.unravel_index(int(values[:, lines].argmax()), (len(parts), lines.size))
+        value = (float(values[place, lines[line]]) - middle) / deviation
+        found.append(Cut(value, axis, int(lines[line]), parts[place]))
+    return max(found, key=lambda cut: cut.value, default=None)
+
+
 def own_cut(subject: Subject) -> float | None:
     """Return the largest line of the exemplar itself, on the same scale: what is usual for it."""
     if min(subject.pixels.shape[:2]) < SMALLEST:

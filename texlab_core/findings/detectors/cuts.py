@@ -6,20 +6,25 @@ from texlab_core.findings.finding import Region, Where
 from texlab_core.findings.regions import along
 from texlab_core.findings.registry import Case, Detector, Seen, register
 from texlab_core.findings.remedies import multiply, put, say
-from texlab_core.measures.cuts import largest_cut
+from texlab_core.measures.cuts import largest_cut, largest_cut_between
 from texlab_core.measures.limits import LIMITS
+from texlab_core.measures.registry import find_measure
 from texlab_core.measures.repeats import seams
 
 
 def _cuts(case: Case) -> Seen | None:
     if not case.fires():
         return None
-    cut = largest_cut(case.subject)
+    # Where copies are laid side by side the cut is where they meet; elsewhere lines of the texture may jump more.
+    cut = largest_cut_between(case.subject)
+    if cut is None or cut.value < LIMITS["cuts"].good:
+        cut = largest_cut(case.subject)
     if cut is None:
         return None
     where = along(cut, case.subject.image.shape[:2])
     return Seen(
-        f"A straight cut runs {where.words}: it jumps by {case.text('cuts')} deviations, the exemplar's own "
+        f"A straight cut runs {where.words}: it jumps by {find_measure('cuts').text(cut.value)} deviations, "
+        "the exemplar's own "
         "largest "
         f"line by {case.text('own-cuts')}.",
         where,
