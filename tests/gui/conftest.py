@@ -15,6 +15,7 @@ from texlab.app import explorer as texlab_explorer  # noqa: F401 (before any tes
 from texlab.app import start as texlab_app
 from texlab.storage.settings import Settings
 from texlab.style.theme import ThemeSource
+from texlab.window.main_window import MainWindow
 from texlab_core.engine.registry import methods
 from texlab_core.warming import warm_up
 
@@ -31,6 +32,12 @@ PATIENCE_MS = 180_000
 def compiled() -> None:
     """Compile the methods' kernels before any test waits for one: in a new clone that takes most of a minute."""
     warm_up()
+
+
+@pytest.fixture(autouse=True)
+def screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give the window 1280 x 800 pixels, whatever the screen of the tests has."""
+    monkeypatch.setattr(MainWindow, "_available", lambda _: (0, 0, 1282, 832))
 
 
 @pytest.fixture(autouse=True)

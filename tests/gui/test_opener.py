@@ -35,6 +35,7 @@ class Background:
 
     def __init__(self) -> None:
         self.news: list[str] = []
+        self.exemplar = None
         self.problems: list[str] = []
         self.said = SimpleNamespace(emit=self.news.append)
         self.waiting: list[Callable[[], None]] = []
@@ -71,8 +72,9 @@ class Bench:
         self.background: Any = Background()
         self.recent: list[str] = []
         self.presets: list[Any] = []
+        self.several: list[Any] = []
         settings: Any = SimpleNamespace(add_recent=self.recent.append)
-        self.opener = Opener(self.session, self.background, settings, self.presets.append)
+        self.opener = Opener(self.session, self.background, settings, self.presets.append, self.several.append)
 
     def open(self, source: Any) -> None:
         self.opener.open(source)
@@ -206,3 +208,20 @@ def test_a_result_becomes_the_exemplar(bench: Bench) -> None:
     bench.background.go_on()
     assert bench.sample.source.name == "msg result"
     assert np.array_equal(bench.sample.source.pixels, pixels)
+
+
+def test_of_several_pictures_the_first_readable_is_taken_and_all_can_be_chosen(
+    bench: Bench, tmp_path: Path
+) -> None:
+    bad, good = tmp_path / "bad.png", tmp_path / "good.png"
+    bad.write_text("no picture")
+    Image.fromarray(np.arange(64, dtype=np.uint8).reshape(8, 8)).save(good)
+    preset = tmp_path / "five.json"
+    write_preset(Preset.of("five", HB.id, HB.params()), preset)
+    bench.opener.open_all([str(bad), str(preset), str(good)])
+    bench.background.go_on()
+    assert bench.sample.path == str(good)
+    assert [each.name for each in bench.presets] == ["five"]
+    assert bench.several == [[str(bad), str(good)]]
+    assert any("bad.png" in sentence for sentence in bench.background.problems)
+    assert "2 pictures were opened" in bench.background.news[0]

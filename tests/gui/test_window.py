@@ -239,7 +239,9 @@ def test_paste_and_copy(qtbot: Any, explorer: Explorer) -> None:
     wait_idle(qtbot, explorer)
     assert np.array_equal(explorer.controller.exemplar.pixels[7, 7], [1, 0, 0])
     qtbot.keyClick(explorer.window, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
-    copied = QGuiApplication.clipboard().image()
+    clipboard = QGuiApplication.clipboard()
+    qtbot.waitUntil(lambda: clipboard.mimeData().hasFormat("image/png"))
+    copied = QImage.fromData(clipboard.mimeData().data("image/png"))
     assert (copied.width(), copied.height()) == (48, 48)
     shown = explorer.controller.column_scene(explorer.session.selected_id).picture
     assert not np.array_equal(shown, shown[::-1])

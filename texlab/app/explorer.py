@@ -18,10 +18,11 @@ from texlab.docks.host import DockHost
 from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
+from texlab.state.changes import as_a_whole, at_full_size
 from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
 from texlab.storage.reading import Choice, is_document, last_exemplar
-from texlab.storage.settings import columns_from_json, seed_and_size
+from texlab.storage.settings import columns_from_json, has_kept_inputs, seed_and_size
 from texlab.window.carrier import Carrier
 from texlab.window.exchange import Exchange
 from texlab.window.gallery_thumbnails import Thumbnails
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 
     from texlab.columns.column import ColumnView
     from texlab.docks.base import Dock
+    from texlab.runs.worker import Task
+    from texlab.storage.reading import Source
     from texlab.storage.settings import Settings
     from texlab.style.theme import ThemeSource
     from texlab.window.main_window import MainWindow
@@ -60,7 +63,11 @@ class Explorer(QObject):
         self.session = Session(self)
         self.controller = Controller(self.session, self)
         self.opener = Opener(
-            self.session, self.controller, settings, lambda preset: self.presets.import_preset(preset)
+            self.session,
+            self.controller,
+            settings,
+            lambda preset: self.presets.import_preset(preset),
+            self._show_several,
         )
         self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
         self.autosave = Autosave(self.session, settings, self)
@@ -98,8 +105,23 @@ class Explorer(QObject):
     def start(self, source: str | None, *, columns: Sequence[tuple[Any, ...]] | None = None) -> None:
         """Fill the window: the given image, or the last session, or the first texture."""
         saved = self.settings.values.get("session")
-        tell = partial(self.window.message_bar.tell, kind="problem")
-        chosen = columns or columns_from_json(saved, tell) or first_columns()
+        if columns or not has_kept_inputs(saved):
+            self._fill(source, saved, columns or columns_from_json(saved))
+            return
+        said: list[str] = []
+
+        def work(task: Task) -> Sequence[tuple[Any, ...]]:
+            return columns_from_json(saved, said.append)
+
+        def done(found: Sequence[tuple[Any, ...]]) -> None:
+            self._fill(source, saved, found)
+            if said:
+                self.window.message_bar.tell(" ".join(said), "problem")
+
+        self.controller.once("session", work, done, lambda: self._fill(source, saved, ()))
+
+    def _fill(self, source: str | None, saved: Any, columns: Sequence[tuple[Any, ...]]) -> None:
+        chosen = columns or first_columns()
         seed, size = seed_and_size(saved)
         made = tuple(Column(place + 1, *each) for place, each in enumerate(chosen))
         self.session.apply(State(None, made, seed, size, len(made) + 1), "start")
@@ -109,7 +131,7 @@ class Explorer(QObject):
         self.session.reset_history()
         if broken := " ".join(each.sentence for each in failures()):
             log.warning(broken)
-            tell(broken)
+            self.window.message_bar.tell(broken, "problem")
         self._open_first(source, saved)
 
     def _open_first(self, source: str | None, saved: Any) -> None:
@@ -151,19 +173,30 @@ class Explorer(QObject):
         waiting = self.controller.busy or self.controller.measuring or any(host.busy for host in self.hosts)
         return not waiting and self.session.state.sample is not None
 
+    def _show_several(self, sources: Sequence[Source]) -> None:
+        self.window.docks["gallery"].show()
+        self.thumbnails.show_several(sources)
+
+    def _show_whole(self, whole: bool) -> None:
+        sample = self.session.state.sample
+        if sample is not None:
+            self.session.set_sample(as_a_whole(sample) if whole else at_full_size(sample))
+
     # Wiring.
 
     def _connect(self) -> None:
         window, session, controller, presenter = self.window, self.session, self.controller, self.presenter
-        window.dropped.connect(self.opener.open)
+        window.dropped.connect(self.exchange.take)
         window.closing.connect(self.close)
         window.gallery.chosen.connect(self.opener.open)
+        window.gallery.strip.chosen.connect(self.opener.open)
         self._connect_controls()
         # It comes with every change, and also when only the history is another one.
         session.history_changed.connect(presenter.show_session)
         session.selected.connect(lambda _: presenter.show_session())
         controller.scene_changed.connect(presenter.show_scene)
         controller.exemplar_ready.connect(presenter.show_exemplar)
+        controller.errands_changed.connect(window.show_errands)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
         presenter.recent_chosen.connect(self.opener.open)
@@ -186,6 +219,8 @@ class Explorer(QObject):
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)
         exemplar.scale_changed.connect(lambda scale: turn("scale", partial(controller.edit_scale, scale)))
+        exemplar.whole_wanted.connect(self._show_whole)
+        exemplar.transparency_wanted.connect(self.opener.read_transparency)
         exemplar.hovered.connect(self.presenter.say_exemplar_pixel)
 
     def _connect_column(self, view: ColumnView) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import (
     QFrame,
@@ -89,6 +89,7 @@ class ColumnView(QFrame):
         self.progress.setTextVisible(False)
         self.line = StatusLine()
         self.line.setObjectName(f"line-{column_id}")
+        self.progress.setAccessibleName("Progress of this column")
         self.stop_button.hide()
         buttons = QHBoxLayout()
         buttons.setSpacing(2)
@@ -114,6 +115,15 @@ class ColumnView(QFrame):
         self.stop_button.clicked.connect(lambda: self.command.emit(self.column_id, "stop"))
         self.pane.clicked.connect(self._pane_clicked)
         self.pane.hovered.connect(lambda row, column: self.hovered.emit(self.column_id, row, column))
+        for part in (
+            self.line,
+            self.progress,
+            self.method_box,
+            self.run_button,
+            self.stop_button,
+            self.menu_button,
+        ):
+            part.installEventFilter(self)
 
     def _button(self, text: str, tip: str, name: str) -> QToolButton:
         button = QToolButton()
@@ -135,6 +145,9 @@ class ColumnView(QFrame):
         if before is None or before.method != scene.method:
             with QSignalBlocker(self.method_box):
                 self.method_box.setCurrentIndex(self.method_box.findData(scene.method))
+            self.setAccessibleName(f"Column {scene.title}")
+            self.pane.setAccessibleName(f"Result of {scene.title}")
+            self.progress.setAccessibleName(f"Progress of {scene.title}")
         if before is None or before.picture is not scene.picture:
             self.pane.set_picture(scene.picture)
         self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
@@ -181,6 +194,12 @@ class ColumnView(QFrame):
         if self.property(name) != value:
             self.setProperty(name, value)
             _polish(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Choose the column with whatever of its card is pressed: texts and buttons keep presses to themselves."""
+        if event.type() == QEvent.Type.MouseButtonPress:
+            self.chosen.emit(self.column_id)
+        return super().eventFilter(watched, event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Choose the column."""

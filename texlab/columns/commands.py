@@ -43,11 +43,11 @@ COLUMN_COMMANDS = {
             own="Duplicate column",
         ),
         Command(
-            "&Column", "left", "Move &left", "Ctrl+Shift+Left", "Move the chosen column to the left",
+            "&Column", "left", "Mov&e left", "Ctrl+Shift+Left", "Move the chosen column to the left",
             own="Move left",
         ),
         Command(
-            "&Column", "right", "Move &right", "Ctrl+Shift+Right", "Move the chosen column to the right",
+            "&Column", "right", "Move r&ight", "Ctrl+Shift+Right", "Move the chosen column to the right",
             own="Move right",
         ),
         Command(

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QVBoxLayout
 
+from texlab.state.changes import as_a_whole, at_full_size, reduced_words
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine, strut
 from texlab_core.engine.inputs import Crop
+from texlab_core.images.unit_range import use_of_alpha
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
+    from texlab.state.session import Sample
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
@@ -34,6 +37,12 @@ _ARROWS = {
     Qt.Key.Key_Left: (0, -1),
     Qt.Key.Key_Right: (0, 1),
 }
+_TRANSPARENCY_WORDS = {
+    "white": "Transparent pixels over white",
+    "black": "Transparent pixels over black",
+    "ignore": "Colours as stored, transparency ignored",
+    "keep": "Colours as stored, transparency kept for the result",
+}
 _STEPS = {
     Qt.KeyboardModifier.NoModifier: 1,
     Qt.KeyboardModifier.ShiftModifier: 1,
@@ -44,10 +53,14 @@ _STEPS = {
 class ExemplarView(QFrame):
     """Shows the scaled source; the crop box recomputes everything while it is dragged.
 
-    ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source.
+    ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source;
+    ``whole_wanted(whole)`` for all of a large picture reduced, or its middle at full size;
+    ``transparency_wanted(use)`` a key of ``TRANSPARENCY``.
     """
 
     crop_changed = Signal(object, bool)
+    whole_wanted = Signal(bool)
+    transparency_wanted = Signal(str)
     scale_changed = Signal(float)
     hovered = Signal(int, int)
     clicked = Signal(int, int)
@@ -86,6 +99,8 @@ class ExemplarView(QFrame):
         self.line.setObjectName("exemplar-line")
         self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
+        self.pane.setAccessibleName("Exemplar")
+        self.setAccessibleName("Exemplar with its crop and scale")
         self._box: Any = None
         self._name = ""
         self._crop: Crop | None = None
@@ -97,6 +112,13 @@ class ExemplarView(QFrame):
         head = QHBoxLayout()
         head.setSpacing(0)
         head.addWidget(self.title, 1)
+        self.choices = QToolButton()
+        self.choices.setObjectName("exemplar-choices")
+        self.choices.setAutoRaise(True)
+        self.choices.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.choices.setMenu(QMenu(self.choices))
+        self.choices.hide()
+        head.addWidget(self.choices)
         # The rows are as high as those of the columns.
         head.addWidget(strut(ShortBox()))
         controls = QHBoxLayout()
@@ -135,6 +157,37 @@ class ExemplarView(QFrame):
         with QSignalBlocker(self.crop_button):
             self.crop_button.setChecked(crop is not None)
         self._show_crop(crop)
+
+    def offer(self, sample: Sample) -> None:
+        """Offer the other choices for a picture that was reduced, cut or has transparency; nothing for others."""
+        whole, part = as_a_whole(sample), at_full_size(sample)
+        is_large, use = whole.scale < 1, use_of_alpha(sample.source.notes)
+        self.choices.setVisible(is_large or use is not None)
+        self.choices.setText(f"{100 * sample.scale:.3g} %" if is_large else "α")
+        name = f"{reduced_words(sample) or 'The part and the transparency in use'}; change"
+        self.choices.setAccessibleName(name)
+        set_tip(self.choices, name)
+        menu = self.choices.menu()
+        menu.clear()
+        crop = part.crop
+        if is_large and crop is not None:
+            for text, wanted, now in (
+                (f"The whole picture at {100 * whole.scale:.3g} %", True, whole),
+                (f"Its middle at full size, {crop.width} x {crop.height} pixels", False, part),
+            ):
+                action = menu.addAction(text)
+                action.setObjectName("exemplar-whole" if wanted else "exemplar-part")
+                action.setCheckable(True)
+                action.setChecked(sample == now)
+                action.triggered.connect(lambda _=False, wanted=wanted: self.whole_wanted.emit(wanted))
+        if use is not None:
+            menu.addSeparator()
+            for key, text in _TRANSPARENCY_WORDS.items():
+                action = menu.addAction(text)
+                action.setObjectName(f"exemplar-alpha-{key}")
+                action.setCheckable(True)
+                action.setChecked(sample.alpha == key)
+                action.triggered.connect(lambda _=False, key=key: self.transparency_wanted.emit(key))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Shorten the name to the room there is."""

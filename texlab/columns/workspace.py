@@ -30,6 +30,7 @@ class Workspace(QScrollArea):
     def __init__(self, methods: Iterable[tuple[str, str]], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("workspace")
+        self.setAccessibleName("Exemplar and columns")
         self.setWidgetResizable(True)
         self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._methods = tuple(methods)

@@ -46,6 +46,7 @@ class Dock(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName(f"dock-{self.name}")
+        self.setAccessibleName(self.title)
 
     def show_scene(self, scene: Scene) -> None:
         """Show what needs no computing."""

@@ -131,7 +131,8 @@ class FramedDock(Dock):
     def add_control(self, control: QWidget, name: str, label: str, tip: str) -> None:
         """Put a widget into the line of controls."""
         control.setObjectName(f"{self.name}-{name}")
-        control.setAccessibleName(label)
+        # A sign or one letter is no name.
+        control.setAccessibleName(label if sum(map(str.isalpha, label)) > 1 else tip.split(";")[0])
         set_tip(control, tip)
         self._line.addWidget(control)
 

@@ -113,11 +113,19 @@ class NumberKnob(KnobWidget):
 
     def set_value(self, value: Any) -> None:
         """Show a value without emitting anything."""
-        self._value = value
+        self._take(value)
         with QSignalBlocker(self.slider), QSignalBlocker(self.box):
             self.box.setValue(value)
             if not self.slider.isSliderDown():
                 self.slider.setValue(self._scale.position(value))
+
+    def _take(self, value: Any) -> None:
+        """Keep a value, and let the slider say it: what a screen reader finds there is a position."""
+        self._value = value
+        unit = f" {self._field.knob.unit}" if self._field.knob.unit else ""
+        said = f"{self._field.label}: {self.box.textFromValue(value)}{unit}"
+        if said != self.slider.accessibleName():
+            self.slider.setAccessibleName(said)
 
     def _typed(self, value: float) -> int | float:
         return round(value) if self._field.kind == "int" else float(value)
@@ -144,7 +152,7 @@ class NumberKnob(KnobWidget):
         value = self._at(position)
         if value == self._value:
             return
-        self._value = value
+        self._take(value)
         with QSignalBlocker(self.box):
             self.box.setValue(value)  # type: ignore[arg-type]  # the box of an int knob gets an int
         self.edited.emit(value, False)
@@ -168,7 +176,7 @@ class NumberKnob(KnobWidget):
         value = self._typed(shown)
         if self._field.knob.odd and value % 2 == 0:
             value = min(int(value) + 1, int(self._scale.high))
-        self._value = value
+        self._take(value)
         with QSignalBlocker(self.slider), QSignalBlocker(self.box):
             self.slider.setValue(self._scale.position(value))
             self.box.setValue(value)  # type: ignore[arg-type]

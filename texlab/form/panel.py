@@ -48,6 +48,7 @@ class ParametersView(QWidget):
         set_tip(self.help_button, "Open the help page of this method (F1)")
         self.scroll_area = QScrollArea()
         self.scroll_area.setObjectName("parameters-scroll")
+        self.scroll_area.setAccessibleName("Parameters of the chosen column")
         self.scroll_area.setWidgetResizable(True)
         self.presets = PresetBar()
         buttons = QHBoxLayout()

@@ -38,6 +38,7 @@ class Controller(QObject):
     """Runs columns when the session changes and tells the window what to show.
 
     ``scene_changed(scene)`` after every change; ``exemplar_ready(prepared)`` when another exemplar is in use;
+    ``errands_changed(names)`` when opening, saving and the like begin or end;
     ``problem(sentence)`` for what the user should know and ``said(sentence)`` for good news.
     """
 
@@ -46,6 +47,7 @@ class Controller(QObject):
     problem = Signal(str)
     said = Signal(str)
     all_idle = Signal()
+    errands_changed = Signal(object)
 
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -64,6 +66,7 @@ class Controller(QObject):
         self._errands = Errands(self)
         self._errands.failed.connect(self.problem)
         self._errands.idle.connect(self._errands_ended)
+        self._errands.changed.connect(lambda: self.errands_changed.emit(self._errands.names))
         self._warming = Worker("warming", parent=self)
         self._warming.submit(lambda task: self.warmth.serve())
         self._refresh = QTimer(self)

@@ -16,19 +16,28 @@ PATIENCE_S = 60.0
 
 
 class Errands(QObject):
-    """Each errand has a thread of its own; ``failed(sentence)`` for one that fails, ``idle()`` after the last."""
+    """Each errand has a thread of its own; ``failed(sentence)`` for one that fails, ``idle()`` after the last.
+
+    ``changed()`` when one begins or ends.
+    """
 
     failed = Signal(str)
     idle = Signal()
+    changed = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._workers: set[Worker] = set()
+        self._workers: dict[Worker, str] = {}
 
     @property
     def busy(self) -> bool:
         """Whether anything is under way."""
         return bool(self._workers)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of what is under way, in the order in which it began."""
+        return tuple(self._workers.values())
 
     def run(
         self,
@@ -39,7 +48,8 @@ class Errands(QObject):
     ) -> None:
         """Do something once; a failure becomes one sentence, then ``failed()``."""
         worker = Worker(name, parent=self)
-        self._workers.add(worker)
+        self._workers[worker] = name
+        self.changed.emit()
         if done is not None:
             worker.finished.connect(done)
         worker.failed.connect(self.failed)
@@ -50,7 +60,8 @@ class Errands(QObject):
 
     def _end(self, worker: Worker) -> None:
         if worker in self._workers:
-            self._workers.discard(worker)
+            del self._workers[worker]
+            self.changed.emit()
             worker.close()
             worker.deleteLater()
             if not self._workers:

@@ -96,6 +96,7 @@ class Worker(QObject):
         self._oldest = 0
         self._reported = 0
         self._closing = False
+        self._ending = False
         self._runs = False
         # Events that wait in the queue of the window's side: what was run is not over before they are told.
         self._ends = 0
@@ -187,15 +188,23 @@ class Worker(QObject):
         if self._thread.is_alive():
             log.error("%s did not end within %.0f s.", self._thread.name, timeout_s)
 
+    def finish(self, timeout_s: float = 60.0) -> None:
+        """Let the thread do what it was asked for last, and wait for its end; nothing is delivered any more."""
+        with self._mail:
+            self._ending = True
+            self._mail.notify()
+        self._thread.join(timeout_s)
+        self.close(0.0)
+
     # The thread's side.
 
     def _work(self) -> None:
         _give_way()
         while True:
             with self._mail:
-                while self._request is None and not self._closing:
+                while self._request is None and not (self._closing or self._ending):
                     self._mail.wait()
-                if self._closing:
+                if self._closing or self._request is None:
                     return
                 asked, self._request = self._request, None
                 generation = self._newest

@@ -35,6 +35,36 @@ def sample_of(image: ImageInput, path: str | None) -> Sample:
     return dataclasses.replace(sample, scale=round(COMFORTABLE_SIDE / side, 3))
 
 
+def is_reduced(sample: Sample) -> bool:
+    """Return whether a picture is shown smaller than it is, at the scale that the program chooses by itself."""
+    return sample.scale < 1 and sample == dataclasses.replace(
+        sample, scale=round(COMFORTABLE_SIDE / max(sample.source.size), 3)
+    )
+
+
+def reduced_words(sample: Sample) -> str:
+    """Return what is said beside a picture that the program has reduced; empty for any other."""
+    if not is_reduced(sample):
+        return ""
+    return f"shown at {100 * sample.scale:.3g} % so that it fits {COMFORTABLE_SIDE} px"
+
+
+def at_full_size(sample: Sample) -> Sample:
+    """Return the other choice for a large picture: its middle, pixel by pixel, at most 256 x 256."""
+    from texlab_core.engine.inputs import Crop
+
+    height, width = sample.source.size
+    rows, columns = min(height, COMFORTABLE_SIDE), min(width, COMFORTABLE_SIDE)
+    crop = Crop((height - rows) // 2, (width - columns) // 2, rows, columns)
+    return dataclasses.replace(sample, scale=1.0, crop=crop)
+
+
+def as_a_whole(sample: Sample) -> Sample:
+    """Return the first choice for a large picture: all of it, scaled to a comfortable size."""
+    side = max(sample.source.size)
+    return dataclasses.replace(sample, scale=round(min(1.0, COMFORTABLE_SIDE / side), 3), crop=None)
+
+
 def sample_as_used(image: ImageInput, path: str | None = None) -> Sample:
     """Return the sample whose exemplar is this image, pixel by pixel."""
     if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):

@@ -15,24 +15,38 @@ from texlab_core.engine.sizes import default_size, size_text
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
+    from texlab_core.images.unit_range import Alpha
 
 MAX_HISTORY = 200
 MAX_HISTORY_BYTES = 2**30
 
 
+# Use and background, as the door takes them.
+TRANSPARENCY: dict[str, tuple[Alpha, float]] = {
+    "white": ("background", 1.0),
+    "black": ("background", 0.0),
+    "ignore": ("ignore", 1.0),
+    "keep": ("keep", 1.0),
+}
+
+
 @dataclass(frozen=True)
 class Sample:
-    """The exemplar as chosen: a source image, scaled first, then cropped."""
+    """The exemplar as chosen: a source image, scaled first, then cropped.
+
+    ``alpha`` is how its transparency was read: a key of :data:`TRANSPARENCY`.
+    """
 
     source: ImageInput
     scale: float = 1.0
     crop: Crop | None = None
     path: str | None = None
+    alpha: str = "white"
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What decides the pixels."""
-        return (self.source.sha256, self.scale, self.crop)
+        """What decides the pixels, and the transparency beside them."""
+        return (self.source.sha256, self.scale, self.crop, self.alpha == "keep")
 
 
 @dataclass(frozen=True)
@@ -90,6 +104,8 @@ class _Entry:
     state: State
     text: str
     merge: object | None = field(default=None)
+    chosen: int = 0
+    """The column that was chosen before the step."""
 
 
 class Session(QObject):
@@ -136,9 +152,9 @@ class Session(QObject):
             return
         del self._entries[self._at + 1 :]
         if merge is not None and self._at > 0 and self._entries[self._at].merge == merge:
-            self._entries[self._at] = _Entry(state, text, merge)
+            self._entries[self._at] = _Entry(state, text, merge, self._entries[self._at].chosen)
         else:
-            self._entries.append(_Entry(state, text, merge))
+            self._entries.append(_Entry(state, text, merge, self._selected))
             self._forget_oldest()
             self._at = len(self._entries) - 1
         self._announce(before)
@@ -177,11 +193,15 @@ class Session(QObject):
         return self._entries[self._at + 1].text if self._at + 1 < len(self._entries) else None
 
     def undo(self) -> None:
-        """Take the last step back."""
+        """Take the last step back; a column that comes back is chosen."""
         if self._at > 0:
-            before = self.state
+            before, undone = self.state, self._entries[self._at]
             self._at -= 1
             self.finish_merge()
+            back = [column.id for column in self.state.columns if before.column(column.id) is None]
+            if back:
+                self._selected = undone.chosen if undone.chosen in back else back[0]
+                self.selected.emit(self._selected)
             self._announce(before)
 
     def redo(self) -> None:
@@ -208,6 +228,8 @@ class Session(QObject):
         """Choose another exemplar, or another crop or scale of it."""
         same_source = self.state.sample is not None and self.state.sample.source is sample.source
         text = "crop or scale" if same_source else f"exemplar {sample.source.name}"
+        if self.state.sample is not None and sample.path is not None and sample.alpha != self.state.sample.alpha:
+            text = "transparency"
         self.apply(dataclasses.replace(self.state, sample=sample), text, merge=merge)
 
     def set_seed(self, seed: int, *, merge: object | None = None) -> None:

@@ -46,6 +46,11 @@ class Autosave(QObject):
         """Put the session into the settings."""
         self._settings.values["session"] = session_to_json(self._session.state, self._session.selected_id)
 
+    @property
+    def busy(self) -> bool:
+        """Whether the last change is not yet on the disk."""
+        return self._rest.isActive() or self._worker.busy
+
     def _save(self) -> None:
         sample = self._session.state.sample
         if sample is None:
@@ -56,7 +61,7 @@ class Autosave(QObject):
         self._worker.submit(lambda task: self._write(text, sample, state), patient=True)
 
     def _write(self, text: str, sample: Sample, state: State) -> None:
-        """Write everything (in the worker's thread, or when that has ended)."""
+        """Write everything, in the worker's thread."""
         wanted = file_name(sample.source) if has_no_home(sample) else None
         if wanted is not None and sample.source is not self._kept:
             try:
@@ -75,12 +80,15 @@ class Autosave(QObject):
         self._swept = True
 
     def close(self) -> None:
-        """End the thread, then save for the last time."""
+        """Save for the last time, in the thread, and end it."""
         self._rest.stop()
-        self._worker.close()
-        sample = self._session.state.sample
-        if sample is None:
-            self._settings.save()
-            return
-        self.remember()
-        self._write(self._settings.to_json(), sample, self._session.state)
+        state = self._session.state
+        sample = state.sample
+        if sample is not None:
+            self.remember()
+        text = self._settings.to_json()
+        self._worker.submit(
+            lambda task: self._settings.write(text) if sample is None else self._write(text, sample, state),
+            patient=True,
+        )
+        self._worker.finish()

@@ -4,30 +4,40 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from texlab.state.changes import Opened
+from texlab.state.session import TRANSPARENCY
 from texlab.storage.kept_exemplar import Kept, kept_exemplar, load
+from texlab.widgets.pasted import Pasted, pixels_of
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from texlab_core.documents.presets import Preset
 
 DOCUMENT_SUFFIX = ".json"
+Source = str | bytes | Pasted | Kept
 # Where a picture is too large to be kept whole, this much of it is a comfortable source.
 _REDUCED_PIXELS = 16 * 2**20
 
 
 @dataclass(frozen=True)
 class Choice:
-    """An exemplar to open: where it is, and how much of it; without a scale it is taken as a fresh image is."""
+    """An exemplar to open: where it is, how much of it, and how its transparency is read.
 
-    source: str | bytes | Kept
+    Without a scale it is taken as a fresh image is.
+    """
+
+    source: Source
     crop: Crop | None = None
     scale: float | None = None
+    alpha: str = "white"
 
 
 @dataclass(frozen=True)
@@ -38,7 +48,7 @@ class Document:
     preset: Preset | None = None
 
 
-def is_document(source: str | bytes) -> bool:
+def is_document(source: Source) -> TypeGuard[str]:
     """Return whether a source is a file that goes into a column instead of being the exemplar."""
     return isinstance(source, str) and source.lower().endswith(DOCUMENT_SUFFIX)
 
@@ -67,8 +77,10 @@ def open_document(path: str) -> Document:
     return Document(preset=presets.preset_from_json(data, what=f"the preset {file.name}"))
 
 
-def open_source(source: str | bytes | Kept, should_stop: Callable[[], bool] | None = None) -> Opened:
-    """Read an image or a saved result (a path, gallery:NAME, the bytes of a file, or what was kept); in a thread.
+def open_source(source: Source, should_stop: Callable[[], bool] | None = None, alpha: str = "white") -> Opened:
+    """Read an image or a saved result: a path, gallery:NAME, the bytes of a file, what was pasted or kept.
+
+    Meant for a worker's thread.
 
     Raises
     ------
@@ -76,11 +88,12 @@ def open_source(source: str | bytes | Kept, should_stop: Callable[[], bool] | No
         One sentence when it is neither.
     """
     from texlab_core.documents.reading import read_recipe
-    from texlab_core.errors import NoRecipeError, TooLargeError
-    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.errors import NoRecipeError
 
     if isinstance(source, Kept):
         return Opened(load(source), None)
+    if isinstance(source, Pasted):
+        return Opened(_read_image(pixels_of(source.image), source.name, should_stop, alpha), None)
     path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
     if path is not None or isinstance(source, bytes):
         with contextlib.suppress(NoRecipeError):
@@ -88,12 +101,22 @@ def open_source(source: str | bytes | Kept, should_stop: Callable[[], bool] | No
             image = job.inputs.get("exemplar")
             if isinstance(image, ImageInput):
                 return Opened(image, None, job)
+    return Opened(_read_image(source, None, should_stop, alpha), path)
+
+
+def _read_image(
+    source: str | bytes | NDArray[Any], name: str | None, should_stop: Callable[[], bool] | None, alpha: str
+) -> ImageInput:
+    from texlab_core.errors import TooLargeError
+    from texlab_core.images.exemplar import as_exemplar
+
+    use, background = TRANSPARENCY[alpha]
+    read = partial(as_exemplar, source, name=name, alpha=use, background=background, should_stop=should_stop)
     try:
-        image = as_exemplar(source, should_stop=should_stop)
+        return read()
     except TooLargeError as error:
         scale = (_REDUCED_PIXELS / (error.width * error.height)) ** 0.5
-        image = as_exemplar(source, scale=scale, should_stop=should_stop)
-    return Opened(image, path)
+        return read(scale=scale)
 
 
 def last_exemplar(saved: Any) -> list[Choice]:
@@ -108,7 +131,8 @@ def last_exemplar(saved: Any) -> list[Choice]:
     box = Crop(*crop) if isinstance(crop, list) and whole else None
     factor = float(scale) if isinstance(scale, int | float) and 0 < scale <= 1 else None
     if isinstance(path, str):
-        return [Choice(path, box, factor)]
+        alpha = sample.get("alpha")
+        return [Choice(path, box, factor, alpha if alpha in TRANSPARENCY else "white")]
     if name in [entry.uri for entry in gallery()]:
         return [Choice(str(name), box, factor)]
     kept = kept_exemplar(sample)

@@ -108,6 +108,7 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
             "name": state.sample.source.name,
             "path": state.sample.path,
             "scale": state.sample.scale,
+            "alpha": state.sample.alpha,
             "crop": None if crop is None else [crop.top, crop.left, crop.height, crop.width],
         }
         if has_no_home(state.sample):
@@ -149,6 +150,12 @@ def columns_from_json(data: Any, tell: Callable[[str], None] = log.warning) -> l
         except (InputError, AttributeError, KeyError, TypeError, ValueError) as error:
             log.warning("A column of the last session was left out: %s", error)
     return found
+
+
+def has_kept_inputs(data: Any) -> bool:
+    """Return whether a saved session names further inputs, which have to be read from files."""
+    listed = data.get("columns") if isinstance(data, dict) else None
+    return isinstance(listed, list) and any(isinstance(each, dict) and each.get("inputs") for each in listed)
 
 
 def _inputs_from_json(saved: Any, method: Method, tell: Callable[[str], None]) -> tuple[tuple[str, Input], ...]:

@@ -27,6 +27,7 @@ def strut(model: QWidget) -> QWidget:
     policy.setRetainSizeWhenHidden(True)
     model.setSizePolicy(policy)
     model.setFixedWidth(1)
+    model.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     model.hide()
     return model
 

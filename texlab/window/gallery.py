@@ -9,6 +9,7 @@ from PySide6.QtGui import QIcon, QImage, QPixmap
 from PySide6.QtWidgets import QLineEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from texlab.widgets.plain import set_tip
+from texlab.window.strip import ExemplarStrip
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,7 +22,10 @@ _WORDS = Qt.ItemDataRole.UserRole + 1
 
 
 class GalleryView(QWidget):
-    """Lists textures by class; ``chosen(name)`` is the name with its ``gallery:`` prefix."""
+    """Lists textures by class, and under them what was opened together.
+
+    ``chosen(name)`` is the name of a texture with its ``gallery:`` prefix.
+    """
 
     chosen = Signal(str)
 
@@ -47,7 +51,9 @@ class GalleryView(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.addWidget(self.search)
-        layout.addWidget(self.tree)
+        layout.addWidget(self.tree, 1)
+        self.strip = ExemplarStrip()
+        layout.addWidget(self.strip)
         self._items: dict[str, QTreeWidgetItem] = {}
         self.thumbnails = 0
         self.search.textChanged.connect(self._filter)

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QMainWindow,
     QMenu,
+    QProgressBar,
     QTabBar,
     QVBoxLayout,
     QWidget,
@@ -20,27 +21,45 @@ from PySide6.QtWidgets import (
 
 from texlab.form.panel import ParametersView
 from texlab.style.theme import apply_theme
-from texlab.widgets.mime import source_of
+from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.layouts import Layouts
 from texlab.window.message_bar import MessageBar
+from texlab.window.screen_fit import first_window, panel_sizes, within
+from texlab.window.stops import FocusRing, next_stop
 from texlab.window.toolbar import ToolBar
 
 if TYPE_CHECKING:
-    from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+    from collections.abc import Sequence
+
+    from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent
 
     from texlab.docks.base import Dock
     from texlab.state.session import Session
     from texlab.storage.settings import Settings
     from texlab.style.theme import Theme, ThemeSource
+    from texlab.window.screen_fit import Rect
+
+
+# What takes long enough to be seen, by the names of the errands.
+ERRANDS = {
+    "open": "opening",
+    "open-document": "opening",
+    "session": "opening",
+    "save": "saving",
+    "sheet": "saving",
+    "save-code": "saving",
+    "copy": "copying",
+    "fill": "filling",
+}
 
 
 class MainWindow(QMainWindow):
     """Menus, tool bar, gallery, parameters, docks and status bar.
 
-    ``dropped(source)`` is a path or the bytes of an image; ``closing`` comes before the window goes.
+    ``dropped(brought)`` is a :class:`Brought`; ``closing`` comes before the window goes.
     """
 
     dropped = Signal(object)
@@ -53,7 +72,7 @@ class MainWindow(QMainWindow):
         self.setWindowIcon(application_icon())
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
-        self.resize(1280, 800)
+        self.setGeometry(*first_window(self._available()))
         self.settings = settings
         self.themes = themes
         self.actions_by_name = make_actions(self)
@@ -75,8 +94,9 @@ class MainWindow(QMainWindow):
         self._middle.setFocus()
         self.gallery = GalleryView()
         self.parameters = ParametersView()
-        self._add_side("Gallery", self.gallery, Qt.DockWidgetArea.LeftDockWidgetArea, 190)
-        self._add_side("Parameters", self.parameters, Qt.DockWidgetArea.RightDockWidgetArea, 270)
+        gallery, parameters, _ = panel_sizes(self.width(), self.height())
+        self._add_side("Gallery", self.gallery, Qt.DockWidgetArea.LeftDockWidgetArea, gallery)
+        self._add_side("Parameters", self.parameters, Qt.DockWidgetArea.RightDockWidgetArea, parameters)
         self.setCorner(Qt.Corner.BottomLeftCorner, Qt.DockWidgetArea.LeftDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self._make_menus()
@@ -88,6 +108,7 @@ class MainWindow(QMainWindow):
         if settings.text("layout") == "teach":
             self.layouts.set_text_size("teach")
         themes.changed.connect(self.show_theme)
+        self._ring = FocusRing(self)
 
     # Building.
 
@@ -127,7 +148,8 @@ class MainWindow(QMainWindow):
                 menu.setParent(self, menu.windowFlags())
         self._fill_docks_menu()
         if first is not None:
-            self.resizeDocks([first], [260], Qt.Orientation.Vertical)
+            docks_height = panel_sizes(self.width(), self.height())[2]
+            self.resizeDocks([first], [docks_height], Qt.Orientation.Vertical)
         state = self.settings.text("state")
         if not (state and self.restoreState(QByteArray(base64.b64decode(state)))) and first is not None:
             first.raise_()
@@ -178,6 +200,16 @@ class MainWindow(QMainWindow):
         self.memory_label.setProperty("role", "muted")
         set_tip(self.memory_label, "Memory used by the program")
         bar.addWidget(self.pixel_label, 1)
+        self.errand_label = Label("")
+        self.errand_label.setObjectName("status-errand")
+        self.errand_bar = QProgressBar()
+        self.errand_bar.setObjectName("status-errand-progress")
+        self.errand_bar.setAccessibleName("Opening or saving")
+        self.errand_bar.setRange(0, 0)
+        self.errand_bar.setFixedWidth(60)
+        bar.addPermanentWidget(self.errand_label)
+        bar.addPermanentWidget(self.errand_bar)
+        self.show_errands(())
         bar.addPermanentWidget(self.jobs_label)
         bar.addPermanentWidget(self.memory_label)
 
@@ -203,6 +235,12 @@ class MainWindow(QMainWindow):
         alone = session.selected_column is not None
         for name in ("duplicate", "remove", "left", "right", "previous", "next", "reset", "run"):
             self.actions_by_name[name].setEnabled(alone)
+
+    def show_errands(self, names: Sequence[str]) -> None:
+        """Show that something is being opened, copied or saved."""
+        words = list(dict.fromkeys(ERRANDS[name] for name in names if name in ERRANDS))
+        self.errand_label.setText(f"{' and '.join(words).capitalize()} ..." if words else "")
+        self.errand_bar.setVisible(bool(words))
 
     def show_recent(self, paths: list[str], chosen: Any) -> None:
         """List the files opened lately."""
@@ -232,6 +270,14 @@ class MainWindow(QMainWindow):
         geometry = self.settings.text("geometry")
         if geometry:
             self.restoreGeometry(QByteArray(base64.b64decode(geometry)))
+            if not self.isMaximized() and not self.isFullScreen():
+                place = self.geometry()
+                was = place.x(), place.y(), place.width(), place.height()
+                self.setGeometry(*within(was, self._available()))
+
+    def _available(self) -> Rect:
+        room = self.screen().availableGeometry()
+        return room.x(), room.y(), room.width(), room.height()
 
     def remember_geometry(self) -> None:
         """Put geometry and docks into the settings."""
@@ -247,7 +293,23 @@ class MainWindow(QMainWindow):
             if isinstance(tabs, QTabBar):
                 tabs.setElideMode(Qt.TextElideMode.ElideNone)
                 tabs.setUsesScrollButtons(True)
+                tabs.setAccessibleName("Panels")
         return super().event(event)
+
+    def tab_order(self) -> list[QWidget]:
+        """Return the parts of the window in the order in which Tab goes through them."""
+        docks = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
+        return [self.toolbar, self.docks["gallery"], self._middle, self.docks["parameters"], *docks]
+
+    def focusNextPrevChild(self, forward: bool) -> bool:
+        """Go on to what is seen: never into a tab behind another one."""
+        wanted = next_stop(self, self.tab_order(), forward=forward)
+        if wanted is None:
+            return False
+        reason = Qt.FocusReason.TabFocusReason if forward else Qt.FocusReason.BacktabFocusReason
+        wanted.setFocus(reason)
+        self._ring.show_around(wanted)
+        return True
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Tell before the window goes."""
@@ -256,17 +318,18 @@ class MainWindow(QMainWindow):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take files and images."""
-        mime = event.mimeData()
-        if mime.hasImage() or any(url.isLocalFile() for url in mime.urls()):
-            event.acceptProposedAction()
+        take_copy(event)
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        """Go on taking a copy, whatever key is held."""
+        take_copy(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         """Open what was dropped."""
-        source = source_of(event.mimeData())
-        if source is not None:
-            event.acceptProposedAction()
+        if take_copy(event):
+            brought = brought_by(event.mimeData())
             # The answer to the drop must not wait for what follows from it.
-            QTimer.singleShot(0, lambda: self.dropped.emit(source))
+            QTimer.singleShot(0, lambda: self.dropped.emit(brought))
 
 
 def application_icon() -> QIcon:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.state.changes import Opened, fitting, restored, sample_of, with_code, with_crop_of
 from texlab.state.session import Sample, Session
 from texlab.storage.reading import Choice, Document, is_document, open_document, open_source
+from texlab.window.save_kinds import saved_words
 from texlab_core.engine.inputs import ImageInput
 
 if TYPE_CHECKING:
@@ -15,13 +17,18 @@ if TYPE_CHECKING:
 
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
+    from texlab.storage.reading import Source
     from texlab.storage.settings import Settings
     from texlab_core.documents.presets import Preset
     from texlab_core.engine.result import Result
+    from texlab_core.images.formats.writing import Bits
 
 
 class Opener:
-    """Opens and saves through the controller's background workers; presets go to ``import_preset(preset)``."""
+    """Opens and saves through the controller's background workers.
+
+    Presets go to ``import_preset(preset)``, pictures that were opened together to ``show_several(sources)``.
+    """
 
     def __init__(
         self,
@@ -29,16 +36,33 @@ class Opener:
         controller: Controller,
         settings: Settings,
         import_preset: Callable[[Preset], None],
+        show_several: Callable[[Sequence[Source]], None],
     ) -> None:
         self._session = session
         self._controller = controller
         self._settings = settings
         self._import_preset = import_preset
+        self._show_several = show_several
         self._newest = 0
+        self._read: tuple[ImageInput, Choice] | None = None
 
-    def open(self, source: str | bytes) -> None:
-        """Open a path, gallery:NAME or the bytes of a file; the newest of several images wins."""
-        if isinstance(source, str) and is_document(source):
+    def open_all(self, sources: Sequence[Source]) -> None:
+        """Open what came together: every code and preset, and of several pictures the first that can be read."""
+        for source in sources:
+            if is_document(source):
+                self.open(source)
+        pictures = [source for source in sources if not is_document(source)]
+        if len(pictures) > 1:
+            self._show_several(pictures)
+            self._controller.said.emit(
+                f"{len(pictures)} pictures were opened; under the gallery is a strip to choose from."
+            )
+        if pictures:
+            self.open_first_of([Choice(source) for source in pictures])
+
+    def open(self, source: Source) -> None:
+        """Open a path, gallery:NAME, the bytes of a file or what was pasted; the newest of several images wins."""
+        if is_document(source):
             self._open_document(source)
         else:
             self.open_first_of([Choice(source)])
@@ -50,7 +74,7 @@ class Opener:
         number = self._newest
 
         def work(task: Task) -> Opened:
-            return open_source(choice.source, task.should_stop)
+            return open_source(choice.source, task.should_stop, choice.alpha)
 
         def done(opened: Opened) -> None:
             if number == self._newest:
@@ -119,7 +143,8 @@ class Opener:
             return
         if opened.path is not None:
             self._settings.add_recent(opened.path)
-        sample = sample_of(opened.image, opened.path)
+        sample = dataclasses.replace(sample_of(opened.image, opened.path), alpha=choice.alpha)
+        self._read = opened.image, choice
         if choice.scale is not None:
             sample = fitting(dataclasses.replace(sample, scale=choice.scale, crop=choice.crop))
         else:
@@ -134,6 +159,30 @@ class Opener:
             # Nobody wants to undo to an empty window.
             self._session.reset_history()
 
+    def read_transparency(self, alpha: str) -> None:
+        """Read the exemplar again with its transparency used in another way; scale and crop stay."""
+        sample = self._session.state.sample
+        source = self._source_of(sample)
+        if sample is None or source is None:
+            return
+        self._newest += 1
+        number = self._newest
+
+        def done(opened: Opened) -> None:
+            if number == self._newest and self._session.state.sample is sample:
+                changed = dataclasses.replace(sample, source=sample_of(opened.image, None).source, alpha=alpha)
+                self._read = changed.source, Choice(source)
+                self._session.set_sample(changed)
+
+        self._controller.once("open", lambda task: open_source(source, task.should_stop, alpha), done)
+
+    def _source_of(self, sample: Sample | None) -> Source | None:
+        if sample is None or sample.path is not None:
+            return None if sample is None else sample.path
+        # What was pasted is still there while it is the exemplar.
+        same = self._read is not None and self._read[0] is sample.source
+        return self._read[1].source if same and self._read is not None else None
+
     def use_as_exemplar(self, result: Result) -> None:
         """Make a result the exemplar."""
 
@@ -146,15 +195,39 @@ class Opener:
 
         self._controller.once("use", work, lambda image: self._session.set_sample(Sample(image)))
 
-    def save(self, result: Result, path: str) -> None:
-        """Save a result with its recipe."""
+    def save(self, result: Result, path: str, bits: Bits | None = None) -> None:
+        """Save a result with its recipe, at the exemplar's own depth unless another one is given."""
+        exemplar = self._controller.exemplar
 
-        def work(task: Task) -> tuple[str, ...]:
-            from texlab_core.documents.record import save_result
+        def work(task: Task) -> str:
+            return save_as(with_exemplar(result, exemplar), path, bits)
 
-            return save_result(result, path)
+        self._controller.once("save", work, self._controller.said.emit)
 
-        def done(notes: tuple[str, ...]) -> None:
-            self._controller.said.emit(" ".join((f"Saved {path} with its recipe.", *notes)))
 
-        self._controller.once("save", work, done)
+def with_exemplar(result: Result, exemplar: ImageInput | None) -> Result:
+    """Return the result with the exemplar in use, where that has the same pixels.
+
+    A finished result is found again by the pixels it was made of; depth and transparency are those of today.
+    """
+    job = result.job
+    made_of = job.inputs.get("exemplar")
+    if exemplar is None or made_of is None or made_of.sha256 != exemplar.sha256:
+        return result
+    return dataclasses.replace(result, job=dataclasses.replace(job, inputs={**job.inputs, "exemplar": exemplar}))
+
+
+def save_as(result: Result, path: str, bits: Bits | None) -> str:
+    """Save a result (in a worker's thread), and return what there is to say of it."""
+    from texlab_core.documents.record import carried_alpha, result_bits, save_result
+    from texlab_core.images.formats.writing import can_hold_alpha
+
+    wanted = result_bits(result, path) if bits is None else bits
+    flat = result.volume is None and can_hold_alpha(path)
+    alpha = carried_alpha(result) if flat else None
+    notes = save_result(result, path, bits=wanted, alpha=alpha)
+    exemplar = result.job.inputs.get("exemplar")
+    has_alpha = getattr(exemplar, "alpha", None) is not None
+    fate = "carried" if alpha is not None else "lost" if has_alpha else "none"
+    said = saved_words(Path(path), wanted, getattr(exemplar, "depth", wanted), fate)
+    return " ".join((said, *notes))

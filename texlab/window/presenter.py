@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from texlab.state.changes import reduced_words
 from texlab.style.pictures import describe_pixel
 from texlab_core.engine.registry import methods
 
@@ -143,8 +144,10 @@ class Presenter(QObject):
         if prepared is not None:
             height, width = prepared.exemplar.size
             kind = "gray" if prepared.exemplar.channels == 1 else "colour"
-            parts = [f"{width} x {height} {kind}", *sample.source.notes]
+            said = reduced_words(sample)
+            parts = [*([said] if said else []), f"{width} x {height} {kind}", *sample.source.notes]
         self._workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
+        self._workspace.exemplar.offer(sample)
         self._window.actions_by_name["crop"].setChecked(sample.crop is not None)
         if name != self._shown_exemplar:
             if self._shown_exemplar:
@@ -152,6 +155,7 @@ class Presenter(QObject):
                 self._window.message_bar.hide()
             self._shown_exemplar = name
             self._window.gallery.mark(name)
+            self._window.gallery.strip.mark(sample.path)
             self._window.setWindowTitle(f"{name.removeprefix('gallery:')} - TexLab")
             self._window.show_recent(self._settings.recent, lambda path, _=False: self.recent_chosen.emit(path))
 

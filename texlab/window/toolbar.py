@@ -68,6 +68,12 @@ class ToolBar(QToolBar):
         self.addWidget(spring)
         self.addWidget(_layout_button(actions))
         self.addAction(actions["help"])
+        for action in self.actions():
+            button = self.widgetForAction(action)
+            if isinstance(button, QToolButton):
+                button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+                # What is written on it may be a sign.
+                button.setAccessibleName(action.text().replace("&", "").removesuffix(" ...") or button.text())
 
     @property
     def size_shown(self) -> tuple[int, int]:

@@ -11,7 +11,7 @@ import numpy as np
 from texlab_core.errors import Cancelled, ImageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 Alpha = Literal["background", "ignore", "keep"]
 ALPHA: tuple[Alpha, ...] = ("background", "ignore", "keep")
+_IGNORED = "The alpha channel was ignored."
+_KEPT = "The alpha channel was kept aside, and the colours used as they are."
+_LAID = "Transparent pixels were laid over "
 FLOAT_PEAKS = (1, 255, 65535)
 _ROWS_BYTES = 2**24
 _MOST_SAMPLED = 2**20
@@ -200,10 +203,22 @@ class UnitRange:
             self.notes.append(f"The alpha channel is opaque everywhere{nearly} and was dropped.")
             return None
         if alpha == "ignore":
-            self.notes.append("The alpha channel was ignored.")
+            self.notes.append(_IGNORED)
         elif alpha == "keep":
-            self.notes.append("The alpha channel was kept aside, and the colours used as they are.")
+            self.notes.append(_KEPT)
         else:
             shown = {0.0: "black", 1.0: "white"}.get(float(self._background), f"gray {self._background:g}")
-            self.notes.append(f"Transparent pixels were laid over {shown}.")
+            self.notes.append(f"{_LAID}{shown}.")
         return alpha
+
+
+def use_of_alpha(notes: Iterable[str]) -> Alpha | None:
+    """Return what became of a picture's transparency, by what was said of it; None where there was none."""
+    for note in notes:
+        if note == _IGNORED:
+            return "ignore"
+        if note == _KEPT:
+            return "keep"
+        if note.startswith(_LAID):
+            return "background"
+    return None

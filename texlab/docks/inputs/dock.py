@@ -17,7 +17,8 @@ from texlab.docks.recent import Same
 from texlab.state.changes import COMFORTABLE_SIDE
 from texlab.state.intentions import AskOnce, EditInputs, Tell
 from texlab.style.pictures import to_picture
-from texlab.widgets.mime import source_of
+from texlab.widgets.mime import brought_by, take_copy
+from texlab.widgets.pasted import Pasted, pixels_of
 from texlab.widgets.picture_area import PictureArea
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.registry import EXEMPLAR, InputSpec, find_method
@@ -26,11 +27,12 @@ from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from PySide6.QtGui import QDragEnterEvent, QDropEvent
+    from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
+    from texlab.widgets.mime import Brought
     from texlab_core.engine.inputs import Crop, Input
 
 SETTLE_MS = 300
@@ -179,7 +181,10 @@ class InputsDock(FramedDock):
         def read(should_stop: Callable[[], bool]) -> ImageInput:
             from texlab_core.images.exemplar import as_exemplar
 
-            image = as_exemplar(source, name=name, background=spec.background)
+            given, called = source, name
+            if isinstance(source, Pasted):
+                given, called = pixels_of(source.image), source.name
+            image = as_exemplar(given, name=called, background=spec.background, should_stop=should_stop)
             side = max(image.size)
             if spec.texture and side > COMFORTABLE_SIDE:
                 # As a photograph that is opened as the exemplar.
@@ -253,11 +258,14 @@ class InputsDock(FramedDock):
             self.take(path)
 
     def _paste(self) -> None:
-        source = source_of(QGuiApplication.clipboard().mimeData())
-        if source is None:
-            self.intention.emit(Tell("There is no image on the clipboard.", problem=True))
+        self._take_brought(brought_by(QGuiApplication.clipboard().mimeData()))
+
+    def _take_brought(self, brought: Brought) -> None:
+        if brought.sources:
+            self.take(brought.sources[0])
         else:
-            self.take(source)
+            sentence = brought.refusal or "There is no image on the clipboard."
+            self.intention.emit(Tell(sentence, problem=True))
 
     def _fill_gallery(self, menu: QMenu) -> None:
         from texlab_core.images.gallery import gallery
@@ -289,15 +297,17 @@ class InputsDock(FramedDock):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take images and files, where there is a place for them."""
-        if self.spec is not None and source_of(event.mimeData()) is not None:
-            event.acceptProposedAction()
+        if self.spec is not None:
+            take_copy(event)
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        """Go on taking a copy, whatever key is held."""
+        take_copy(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         """Read what was dropped."""
-        source = source_of(event.mimeData())
-        if source is not None:
-            self.take(source)
-            event.acceptProposedAction()
+        if take_copy(event):
+            self._take_brought(brought_by(event.mimeData()))
 
 
 def _text(spec: InputSpec) -> str:

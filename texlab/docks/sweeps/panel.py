@@ -36,6 +36,7 @@ class SweepPanel(QScrollArea):
     def __init__(self, name: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName(f"{name}-panel")
+        self.setAccessibleName("What the sweep varies")
         self._method = ""
         self._choices: dict[str, tuple[AxisChoice, AxisChoice]] = {}
         self._recipes: tuple[SweepRecipe, ...] = ()

@@ -1,0 +1,120 @@
+"""Where Tab goes: through what is seen, in the order of the eye, with a ring around what has the keyboard."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtWidgets import QScrollArea, QWidget
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtGui import QPaintEvent
+
+
+def is_seen(widget: QWidget) -> bool:
+    """Return whether any part of a widget can be seen, if need be after scrolling.
+
+    Qt calls a dock behind another tab visible, too; nothing of it is painted.
+    """
+    if not widget.isVisible():
+        return False
+    if not widget.visibleRegion().isEmpty():
+        return True
+    area = _area_around(widget)
+    return area is not None and is_seen(area)
+
+
+def is_stop(widget: QWidget) -> bool:
+    """Return whether Tab may stop at a widget."""
+    takes = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus)
+    return takes and widget.isEnabled() and widget.focusProxy() is None and is_seen(widget)
+
+
+def stops(window: QWidget, order: Sequence[QWidget]) -> list[QWidget]:
+    """Return where Tab stops in a window: part after part in this order, then what lies in none of them."""
+    chain, each = [], window.nextInFocusChain()
+    while each is not None and each is not window:
+        chain.append(each)
+        each = each.nextInFocusChain()
+
+    def place(widget: QWidget) -> int:
+        return next((k for k, part in enumerate(order) if part is widget or part.isAncestorOf(widget)), len(order))
+
+    found = [widget for widget in chain if widget.window() is window and is_stop(widget)]
+    return sorted(found, key=place)
+
+
+def next_stop(window: QWidget, order: Sequence[QWidget], *, forward: bool) -> QWidget | None:
+    """Return the stop after (or before) what has the keyboard, scrolled into sight."""
+    found = stops(window, order)
+    if not found:
+        return None
+    here = window.focusWidget()
+    if here in found:
+        wanted = found[(found.index(here) + (1 if forward else -1)) % len(found)]
+    else:
+        wanted = found[0 if forward else -1]
+    area = _area_around(wanted)
+    while area is not None:
+        area.ensureWidgetVisible(wanted)
+        area = _area_around(area)
+    return wanted
+
+
+def _area_around(widget: QWidget) -> QScrollArea | None:
+    parent = widget.parentWidget()
+    while parent is not None:
+        if isinstance(parent, QScrollArea):
+            return parent
+        parent = parent.parentWidget()
+    return None
+
+
+class FocusRing(QWidget):
+    """A frame around what Tab has reached, whatever it paints itself."""
+
+    def __init__(self, window: QWidget) -> None:
+        super().__init__(window)
+        self.setObjectName("focus-ring")
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.colour = QColor("#0b62b0")
+        self.around: QWidget | None = None
+        self.hide()
+
+    def show_around(self, widget: QWidget) -> None:
+        """Frame a widget until it loses the keyboard."""
+        self._let_go()
+        self.around = widget
+        widget.installEventFilter(self)
+        self._place()
+        self.show()
+        self.raise_()
+
+    def _let_go(self) -> None:
+        if self.around is not None:
+            self.around.removeEventFilter(self)
+        self.around = None
+        self.hide()
+
+    def _place(self) -> None:
+        if self.around is not None:
+            corner = self.around.mapTo(self.window(), QPoint(0, 0))
+            self.setGeometry(QRect(corner, self.around.size()).adjusted(-2, -2, 2, 2))
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Follow the widget, and go when the keyboard or the mouse goes elsewhere."""
+        if event.type() in (QEvent.Type.FocusOut, QEvent.Type.Hide, QEvent.Type.MouseButtonPress):
+            self._let_go()
+        elif event.type() in (QEvent.Type.Move, QEvent.Type.Resize):
+            self._place()
+        return super().eventFilter(watched, event)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the frame."""
+        painter = QPainter(self)
+        painter.setPen(QPen(self.colour, 2))
+        painter.drawRoundedRect(self.rect().adjusted(1, 1, -1, -1), 3, 3)
