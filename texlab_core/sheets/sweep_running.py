@@ -18,15 +18,28 @@ from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.measures.registry import measure_quick
 from texlab_core.measures.subject import PreparedCache, Subject
-from texlab_core.sheets.sweep import Cell, Sweep
+from texlab_core.sheets.sweep import Cell
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab_core.engine.job import Job
     from texlab_core.engine.steps import Step
 
 _POLL_S = 0.01
+
+
+class Grid(Protocol):
+    """Jobs that are run side by side; a :class:`~texlab_core.sheets.sweep.Sweep` is one."""
+
+    @property
+    def jobs(self) -> tuple[Job, ...]:
+        """What is to be run."""
+        ...
+
+    def values(self, index: int) -> Mapping[str, Any]:
+        """Return what is varied in one of them, by name."""
+        ...
 
 
 class Places(Protocol):
@@ -46,7 +59,7 @@ class Places(Protocol):
 
 
 def run_sweep(
-    sweep: Sweep,
+    sweep: Grid,
     on_cell: Callable[[Cell], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
     *,
@@ -54,6 +67,8 @@ def run_sweep(
     cache: AnalysisCache | None = None,
     workers: int | None = None,
     places: Places | None = None,
+    prepared: PreparedCache | None = None,
+    measure: Callable[[Subject], dict[str, float]] | None = None,
 ) -> tuple[Cell, ...]:
     """Run every cell, as many side by side as there are cores.
 
@@ -76,6 +91,10 @@ def run_sweep(
         Threads; None means one for each core.
     places
         Where each cell takes a place while it runs; None means that there is room.
+    prepared
+        Where the exemplar's part of the measures is kept and found; a new one when None.
+    measure
+        Says the numbers about each result; the quick ones when None.
 
     Returns
     -------
@@ -87,7 +106,13 @@ def run_sweep(
     Cancelled
         When ``should_stop`` said so; every thread has ended then.
     """
-    state = _State(sweep, AnalysisCache() if cache is None else cache, places)
+    state = _State(
+        sweep,
+        AnalysisCache() if cache is None else cache,
+        PreparedCache() if prepared is None else prepared,
+        measure_quick if measure is None else measure,
+        places,
+    )
     count = max(1, min(len(sweep.jobs), (os.cpu_count() or 1) if workers is None else workers))
     cells: dict[int, Cell] = {}
     with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
@@ -120,10 +145,18 @@ def run_sweep(
 class _State:
     """What the threads of one sweep share."""
 
-    def __init__(self, sweep: Sweep, cache: AnalysisCache, places: Places | None) -> None:
+    def __init__(
+        self,
+        sweep: Grid,
+        cache: AnalysisCache,
+        prepared: PreparedCache,
+        measure: Callable[[Subject], dict[str, float]],
+        places: Places | None,
+    ) -> None:
         self.sweep = sweep
         self.cache = cache
-        self.prepared = PreparedCache()
+        self.prepared = prepared
+        self.measure = measure
         self.places = places
         self.stop = threading.Event()
         self.finished: queue.SimpleQueue[Cell] = queue.SimpleQueue()
@@ -172,7 +205,7 @@ class _State:
             result = run(job, watch, self.stop.is_set, cache=self.cache, threads=threads)
         finally:
             turn.give_back()
-        found = measure_quick(Subject.of_result(result, self.prepared, self.stop.is_set))
+        found = self.measure(Subject.of_result(result, self.prepared, self.stop.is_set))
         light = dataclasses.replace(result, volume=None, model=None, maps={}, details=None)
         return {"result": light, "measures": found}
 

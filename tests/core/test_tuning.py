@@ -1,0 +1,269 @@
+"""Tuning: a toy method whose measures are closed forms, so that the best parameters are known."""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pytest
+
+from texlab_core.documents.preset_store import PresetStore, find_preset
+from texlab_core.documents.presets import write_preset
+from texlab_core.engine import registry
+from texlab_core.engine.job import Job
+from texlab_core.engine.params import Knob, Params, describe
+from texlab_core.engine.registry import Method
+from texlab_core.engine.run import run
+from texlab_core.engine.steps import Output, Step
+from texlab_core.engine.streams import Streams
+from texlab_core.errors import Cancelled, InputError
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.sheets.tuning import FRESH_SEEDS, tune
+from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
+from texlab_core.sheets.tuning_thresholds import threshold_rounds
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from texlab_core.engine.inputs import Inputs
+
+
+@dataclass(frozen=True, kw_only=True)
+class HillParams(Params):
+    x: Annotated[float, Knob(help="First.", low=0, high=1)] = 0.5
+    y: Annotated[float, Knob(help="Second.", low=0, high=1)] = 0.1
+    n: Annotated[int, Knob(help="Odd.", low=1, high=9, odd=True)] = 1
+    s: Annotated[float, Knob(help="Even ratios.", low=0.01, high=100, log=True)] = 1.0
+    free: Annotated[float, Knob(help="Without ends.")] = 2.0
+    on: Annotated[bool, Knob(help="No number.")] = False
+
+
+def kept_of(params: HillParams) -> float:
+    """D: up with y, down towards x = .3."""
+    return -5 + 4 * params.y + 4 * (params.x - 0.3) ** 2
+
+
+def gained_of(params: HillParams) -> float:
+    """V: y, and a little for a larger n."""
+    return params.y / 2 + params.n / 100
+
+
+def _analyze(inputs: Inputs, params: HillParams) -> Generator[Step, None, int]:
+    yield Step(1, 1, "look")
+    return 0
+
+
+def _synthesize(model, inputs, params, size, streams):
+    if params.x > 0.99:
+        raise InputError("Too far.")
+    yield Step(1, 1, "done")
+    noise = 0.01 * float(streams("noise").random())
+    return Output(
+        image=np.full((*size, 1), 0.5, np.float32),
+        measures={}
+        if params.on
+        else {"discriminability": kept_of(params) + noise, "visual-difference": gained_of(params)},
+    )
+
+
+@pytest.fixture
+def job(monkeypatch: pytest.MonkeyPatch) -> Job:
+    hill = Method(
+        id="hill", title="Hill", summary="A closed form.", reference="None.", params=HillParams,
+        analyze=_analyze, synthesize=_synthesize,
+    )  # fmt: skip
+    known = dict(registry.methods()) | {"hill": hill}
+    monkeypatch.setattr(registry, "methods", lambda: known)
+    exemplar = as_exemplar(np.full((16, 16, 1), 0.5, np.float32))
+    return Job(method="hill", inputs={"exemplar": exemplar}, size=(16, 16))
+
+
+def test_it_finds_the_largest_v_within_the_limit(job: Job) -> None:
+    found = tune(job, ("x", "y"), limit=-3.1, budget=150)
+    # At x = .3 the limit allows y = .475 less the noise, and V = y / 2 + .01.
+    assert found.kept <= -3.1
+    assert found.gained == pytest.approx(0.2475, abs=0.012)
+    assert found.found.x == pytest.approx(0.3, abs=0.12)
+    assert found.gained > found.base_gained
+    assert len(found.trials) <= 150
+    assert {each.phase for each in found.trials} == {"start", "grid", "steps", "fresh seeds"}
+
+
+def test_the_same_job_gives_the_same_tuning_on_any_number_of_threads(job: Job) -> None:
+    one, two = (tune(job, ("x", "y", "n"), budget=90, workers=count) for count in (1, 3))
+    assert one.to_json() == two.to_json()
+    assert [each.index for each in one.trials] == list(range(len(one.trials)))
+
+
+def test_a_larger_limit_and_a_larger_budget_never_make_it_worse(job: Job) -> None:
+    gains = [tune(job, ("x", "y"), limit=limit, budget=100).gained for limit in (-4.0, -3.5, -3.0, -2.5)]
+    assert gains == sorted(gains)
+    gains = [tune(job, ("x", "y"), limit=-3.1, budget=count).gained for count in (40, 80, 160)]
+    assert gains == sorted(gains)
+
+
+def test_the_limit_start_keeps_what_it_begins_with(job: Job) -> None:
+    found = tune(job, ("x", "y"), limit="start", budget=120)
+    assert found.limit == found.base_kept
+    assert found.kept <= found.base_kept
+    assert found.gained >= found.base_gained + 0.005
+
+
+def test_without_a_way_into_the_limit_it_comes_as_near_as_it_can(job: Job) -> None:
+    found = tune(job, ("x", "y"), limit=-9, budget=120)
+    assert found.kept == min(found.kept, found.base_kept)
+    assert "No setting reached -9.00." in found.sentence
+
+
+def test_what_fails_is_reported_and_not_chosen(job: Job) -> None:
+    found = tune(job, ("x",), limit=0, budget=60)
+    assert {each.error for each in found.trials if each.params.x > 0.99} == {"Too far."}
+    assert found.found.x <= 0.99
+    report = found.to_json()
+    assert [each["discriminability"] for each in report["trials"] if each["error"]] == [None]
+
+
+def test_nothing_better_says_so_and_keeps_the_start(job: Job) -> None:
+    found = tune(replace(job, params=HillParams(x=0.3)), ("s",), budget=60)
+    assert dict(found.changes) == {}
+    assert found.sentence.startswith(f"In {len(found.trials)} runs nothing made more that is new")
+
+
+def test_every_point_is_told_once_with_its_picture(job: Job) -> None:
+    told, shares = [], []
+    found = tune(
+        job, ("x", "y"), budget=60, on_trial=lambda trial, cell: told.append((trial, cell.result)),
+        on_progress=shares.append,
+    )  # fmt: skip
+    assert sorted(each.index for each, _ in told) == list(range(len(found.trials)))
+    assert all(result.image.shape == (16, 16, 1) for trial, result in told if not trial.error)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    fresh = [each for each in found.trials if each.phase == "fresh seeds"]
+    assert {each.seed for each in fresh}.isdisjoint({job.seed})
+    assert len({each.seed for each in fresh}) == FRESH_SEEDS
+
+
+def test_it_stops_when_asked(job: Job) -> None:
+    told = []
+    before = set(threading.enumerate())
+    with pytest.raises(Cancelled):
+        tune(job, ("x", "y"), on_trial=lambda trial, _: told.append(trial), should_stop=lambda: len(told) >= 5)
+    assert len(told) == 5
+    assert set(threading.enumerate()) <= before
+
+
+@pytest.mark.parametrize(
+    ("knobs", "more", "said"),
+    [
+        (("w",), {}, "must be one of x, y, n, s, free, on, seed, got 'w'."),
+        (("on",), {}, "knobs: must be numbers among x, y, n, s, free, got 'on'."),
+        (("seed",), {}, "knobs: must be numbers among x, y, n, s, free, got 'seed'."),
+        (("x", "x"), {}, "A knob is tuned once, got x twice."),
+        ((), {}, "Hill has no thresholds: say which of its numbers are to be tuned (knobs)."),
+        (("x",), {"budget": 23}, "budget: must be a whole number from 24 to 5000, got 23."),
+        (("x",), {"limit": math.nan}, "limit: must be a number, or start"),
+    ],
+)
+def test_one_sentence_before_anything_runs(job: Job, knobs, more, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        tune(job, knobs, on_trial=lambda *_: pytest.fail("something ran"), **more)
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [(HillParams(x=1.0), "Too far."), (HillParams(on=True), "D and V cannot be said about its result.")],
+)
+def test_a_start_that_cannot_be_measured_is_refused(job: Job, start: HillParams, said: str) -> None:
+    with pytest.raises(InputError, match=f"What tuning begins with cannot be used: {said}"):
+        tune(replace(job, params=start), ("x",))
+
+
+def test_places_of_a_range_and_back() -> None:
+    knobs = {each.name: each for each in describe(HillParams)}
+    for name, value in (("x", 0.25), ("n", 5), ("s", 0.1), ("free", -1.0)):
+        assert value_at(knobs[name], place_of(knobs[name], value)) == pytest.approx(value)
+    assert value_at(knobs["s"], 0.5) == 1.0
+    assert grid_values(knobs["n"], 9) == [1, 3, 5, 7, 9]
+    assert (value_at(knobs["x"], -1), value_at(knobs["x"], 2)) == (0.0, 1.0)
+
+
+def test_ranks() -> None:
+    at = [
+        Measured(params=HillParams(), kept=k, gained=g)
+        for k, g in ((-4, 0.2), (-2, 0.9), (-3, 0.5), (math.nan, 9))
+    ]
+    assert best_of(at, -2.5, at[0]) is at[2]
+    assert best_of(at, -9, at[1]) is at[0]
+    assert best_of([at[2]], -2.5, at[2]) is at[2]
+
+
+def _drive(rounds, measure) -> list[tuple[str, Measured]]:
+    tried = []
+    try:
+        phase, asked = next(rounds)
+        while len(tried) < 4000:
+            answer = [measure(each) for each in asked]
+            tried += [(phase, each) for each in answer]
+            phase, asked = rounds.send(answer)
+    except StopIteration:
+        pass
+    return tried
+
+
+def test_thresholds_go_from_alpha_and_side_to_rows_to_cells() -> None:
+    names = ("luminance/laplacian", "luminance/first-0")
+    wanted = {(1, names[0]): 0.8, (1, names[1]): 0.1, (2, names[0]): 0.1, (2, names[1]): 0.1}
+
+    def measure(params: DeBonetParams) -> Measured:
+        table = params.thresholds.matrix(params.alpha, params.beta, 2, names)
+        # V is how near the table is to the wanted one, D how far the side is from 2.
+        far = sum(
+            abs(math.log(max(float(table[k - 1, names.index(n)]), 1e-6) / t)) for (k, n), t in wanted.items()
+        )
+        return Measured(params=params, kept=abs(params.coarsest_side - 2) - 4.0, gained=1 / (1 + far))
+
+    start = measure(DeBonetParams())
+    tried = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
+    phases = [phase for place, (phase, _) in enumerate(tried) if place == 0 or tried[place - 1][0] != phase]
+    assert phases == ["alpha and coarsest side", "rows", "cells"]
+    best = best_of([each for _, each in tried], -3.9, start)
+    assert best.params.coarsest_side == 2
+    assert not best.params.fit_filters
+    got = best.params.thresholds.matrix(best.params.alpha, best.params.beta, 2, names)
+    for (k, name), value in wanted.items():
+        # Cells move by factors of four, rows by two: what is left is less than one such step.
+        assert abs(math.log(float(got[k - 1, names.index(name)]) / value)) < math.log(4)
+    again = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
+    assert [each.params for _, each in again] == [each.params for _, each in tried]
+
+
+def test_knobs_are_searched_to_the_top_of_a_smooth_hill() -> None:
+    fields = [each for each in describe(HillParams) if each.name in ("x", "y", "s")]
+
+    def measure(params: HillParams) -> Measured:
+        return Measured(
+            params=params, kept=-4.0,
+            gained=-((params.x - 0.37) ** 2) - (params.y - 0.81) ** 2 - (math.log10(params.s) - 0.6) ** 2,
+        )  # fmt: skip
+
+    tried = _drive(knob_rounds(measure(HillParams()), fields, 0, Streams(0)), measure)
+    best = best_of([each for _, each in tried], 0, tried[0][1]).params
+    assert (best.x, best.y) == (pytest.approx(0.37, abs=0.01), pytest.approx(0.81, abs=0.01))
+    assert math.log10(best.s) == pytest.approx(0.6, abs=0.04)
+
+
+def test_the_preset_makes_what_was_found(job: Job, tmp_path) -> None:
+    found = tune(job, ("x", "y"), limit=-3.1, budget=80)
+    write_preset(found.preset("mine"), tmp_path / "mine.json")
+    preset = find_preset(str(tmp_path / "mine.json"), PresetStore(tmp_path / "none"), "hill")
+    assert preset.params() == found.found
+    assert preset.note == f"Tuned. {found.sentence}"
+    again = run(Job(method="hill", inputs=job.inputs, params=preset.params(), size=job.size, seed=job.seed))
+    chosen = next(each for each in found.trials if each.params == found.found and each.seed == job.seed)
+    assert again.measures["discriminability"] == chosen.kept
