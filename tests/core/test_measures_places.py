@@ -70,6 +70,8 @@ def test_new_colours_are_those_of_brute_force() -> None:
     np.testing.assert_allclose(palette.palette_map(subject), brute)
     assert palette.palette_distance(subject) == pytest.approx(brute.mean())
     assert of("palette-distance", exemplar, np.tile(exemplar, (2, 2, 1))) == 0
+    large = np.tile(image, (32, 32, 1))
+    assert palette.palette_map(Subject.of_images(exemplar, large)).size <= palette.MOST
     # A gray picture is one of three equal channels.
     assert of("palette-distance", exemplar[:, :, :1], exemplar[:, :, :1]) == 0
 

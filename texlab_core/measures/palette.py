@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
     from texlab_core.engine.steps import FloatImage
     from texlab_core.measures.subject import Subject
 
-# A ninth of the pixels tells the mean well enough.
+# A ninth of the pixels tells the mean well enough, and of large pictures so many do.
 STEP = 3
+MOST = 2**14
 _QUERIES = 1024
 
 
@@ -35,18 +37,25 @@ def _rgb(pixels: FloatImage) -> FloatImage:
     return pixels if pixels.shape[2] == 3 else np.repeat(pixels, 3, axis=2)
 
 
+def step_of(size: tuple[int, ...]) -> int:
+    """Return of how many pixels in a row one is looked at: three, or more in a picture above 384 x 384."""
+    return max(STEP, math.ceil(math.sqrt(math.prod(size[:2]) / MOST)))
+
+
 def palette_map(subject: Subject) -> NDArray[np.float64]:
     """Return how far the colour of every third pixel of every third row is from the exemplar's nearest colour.
 
     Returns
     -------
     ndarray
-        (ceil(H / 3), ceil(W / 3)) float64 in gray levels of 255, Euclidean in RGB at 8 bits.
+        (ceil(H / step), ceil(W / step)) float64 in gray levels of 255, Euclidean in RGB at 8 bits; the step is
+        that of :func:`step_of`.
     """
+    step = step_of(subject.image.shape)
 
     def measure() -> NDArray[np.float64]:
         tree = subject.prepared("palette", _tree)
-        sampled = _rgb(subject.image[::STEP, ::STEP])
+        sampled = _rgb(subject.image[::step, ::step])
         levels = np.rint(sampled * 255).reshape(-1, 3)
         nearest = np.empty(len(levels))
         for rows in row_blocks((len(levels), 3), 3 * _QUERIES):

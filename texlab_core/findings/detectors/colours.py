@@ -6,7 +6,7 @@ from texlab_core.findings.limits import HISTOGRAMS
 from texlab_core.findings.regions import densest, everywhere
 from texlab_core.findings.registry import Case, Detector, Seen, register
 from texlab_core.findings.remedies import multiply, put, say, use
-from texlab_core.measures.palette import STEP, palette_map
+from texlab_core.measures.palette import palette_map, step_of
 
 # Gray levels from which on a new colour can be seen beside the exemplar's.
 STRIKING = 10.0
@@ -17,7 +17,9 @@ def _colours(case: Case) -> Seen | None:
         return None
     found = palette_map(case.subject)
     striking = found > STRIKING
-    where = densest(striking if striking.any() else found > 0, case.subject.image.shape[:2], STEP)
+    where = densest(
+        striking if striking.any() else found > 0, case.subject.image.shape[:2], step_of(case.subject.image.shape)
+    )
     what = (
         f"Colours were invented: pixels are {case.text('palette-distance')} from the exemplar's nearest colour on "
         f"average, {striking.mean():.1%} of them by more than {STRIKING:g}."
