@@ -43,6 +43,7 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
         visited: list[QWidget] = []
         while len(visited) <= len(expected):
             qtbot.keyClick(window.focusWidget() or window, TAB)
+            QApplication.processEvents()
             here = window.focusWidget()
             assert here is not None
             if visited and here is visited[0]:
@@ -60,6 +61,20 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
         assert window.focusWidget() is visited[-1]
     buttons = {each.accessibleName() for each in visited if window.toolbar.isAncestorOf(each)}
     assert {"New seed", "Run all", "Open image"} <= buttons
+
+
+def test_the_ring_goes_with_the_window(qtbot: Any, explorer: Explorer) -> None:
+    """Qt hands the keyboard on while a window is hidden part by part."""
+    window = explorer.window
+    for _ in range(7):
+        qtbot.keyClick(window.focusWidget() or window, TAB)
+        QApplication.processEvents()
+    assert window._ring.isVisible()
+    window.hide()
+    QApplication.processEvents()
+    assert not window._ring.isVisible()
+    window.show()
+    qtbot.waitExposed(window)
 
 
 def test_the_order_follows_the_eye(explorer: Explorer) -> None:

@@ -303,6 +303,8 @@ class MainWindow(QMainWindow):
 
     def focusNextPrevChild(self, forward: bool) -> bool:
         """Go on to what is seen: never into a tab behind another one."""
+        if not self.isVisible():
+            return super().focusNextPrevChild(forward)
         wanted = next_stop(self, self.tab_order(), forward=forward)
         if wanted is None:
             return False

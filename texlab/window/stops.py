@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt
+import shiboken6
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QScrollArea, QWidget
 
@@ -83,11 +84,26 @@ class FocusRing(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.colour = QColor("#0b62b0")
         self.around: QWidget | None = None
+        self._wanted: QWidget | None = None
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(0)
+        self._soon.timeout.connect(self._show_wanted)
         self.hide()
 
     def show_around(self, widget: QWidget) -> None:
-        """Frame a widget until it loses the keyboard."""
+        """Frame a widget until it loses the keyboard, as soon as the events of now are over.
+
+        Qt hands the keyboard on also while it hides a window part by part: nothing may be raised then.
+        """
+        self._wanted = widget
+        self._soon.start()
+
+    def _show_wanted(self) -> None:
+        widget, self._wanted = self._wanted, None
         self._let_go()
+        if widget is None or not shiboken6.isValid(widget) or not (widget.isVisible() and widget.hasFocus()):
+            return
         self.around = widget
         widget.installEventFilter(self)
         self._place()
@@ -95,7 +111,7 @@ class FocusRing(QWidget):
         self.raise_()
 
     def _let_go(self) -> None:
-        if self.around is not None:
+        if self.around is not None and shiboken6.isValid(self.around):
             self.around.removeEventFilter(self)
         self.around = None
         self.hide()
