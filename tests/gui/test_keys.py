@@ -38,6 +38,7 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
     for dock in explorer.docks:
         window.raise_dock(dock.name)
         QApplication.processEvents()
+        wait_idle(qtbot, explorer)
         window.toolbar.setFocus()
         expected = stops(window, window.tab_order())
         visited: list[QWidget] = []

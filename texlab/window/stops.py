@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import shiboken6
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QScrollArea, QWidget
+from PySide6.QtWidgets import QScrollArea, QTabBar, QWidget
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +30,9 @@ def is_seen(widget: QWidget) -> bool:
 
 def is_stop(widget: QWidget) -> bool:
     """Return whether Tab may stop at a widget."""
-    takes = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus)
+    # The arrows of a tab bar are for the mouse: the keyboard has the bar itself.
+    is_arrow = isinstance(widget.parentWidget(), QTabBar)
+    takes = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus) and not is_arrow
     return takes and widget.isEnabled() and widget.focusProxy() is None and is_seen(widget)
 
 

@@ -72,6 +72,7 @@ class FindingsDock(FramedDock):
         self.text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         words = QScrollArea()
         words.setObjectName("findings-words")
+        words.setAccessibleName("What the finding says")
         words.setWidgetResizable(True)
         words.setWidget(self.text)
         middle = QWidget()
