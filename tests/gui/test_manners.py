@@ -439,7 +439,7 @@ def test_settings_survive_writing_and_reading(texlab_home: Path) -> None:
 def test_a_saved_file_gets_its_suffix(
     qtbot: Any, explorer: Explorer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    answer = (str(tmp_path / "out"), "TIFF (*.tif)")
+    answer = (str(tmp_path / "out"), "TIFF, 8 bits (*.tif)")
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: answer)
     explorer.exchange.export(ids(explorer)[0])
     qtbot.waitUntil((tmp_path / "out.tif").exists, timeout=10_000)
