@@ -13,6 +13,7 @@ from tests.gui.conftest import drag, handle_point, ids, result_image, wait_idle
 from tests.stub_method import StubParams
 from texlab.docks.base import Dock, Question
 from texlab.docks.host import DockHost
+from texlab.runs.column_run import Finished
 from texlab.runs.slots import Slots
 from texlab.runs.worker import Worker
 from texlab_core.engine.run import run
@@ -163,7 +164,11 @@ def test_a_changed_column_does_not_wait_for_the_end_of_the_others(open_window, t
     controller, (first, second) = explorer.controller, ids(explorer)
     ends = []
     for each in (first, second):
-        controller._runners[each].worker.finished.connect(lambda _, each=each: ends.append(each))
+        controller._runners[each].worker.finished.connect(
+            lambda end, each=each: ends.append(each) if isinstance(end, Finished) else None
+        )
+    # What is finished would be shown again without a run.
+    controller._shared.kept.clear()
     controller.run_all()
     qtbot.waitUntil(lambda: controller.column_scene(first).status == "running")
     controller.edit_params(second, StubParams(rounds=2, level=1.0), "level", True)
