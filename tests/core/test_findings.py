@@ -236,6 +236,21 @@ def test_a_result_that_was_to_tile_and_does_not() -> None:
     assert "does-not-tile" in seen(picture, bonet.replace(tileable=True, uneven="crop"))
 
 
+@pytest.mark.parametrize("size", [(2, 2), (3, 20), (9, 9), (16, 17), (20, 40), (33, 33), (40, 44), (64, 50)])
+def test_pictures_of_any_size_can_be_examined_whatever_is_found(
+    size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every detector speaks whenever its rule has a score at all."""
+    monkeypatch.setattr(Rule, "fires", lambda rule, value: rule.score(value) is not None)
+    random = np.random.default_rng(3)
+    exemplar = as_exemplar(random.random((48, 40, 3), np.float32))
+    for one, other in ((exemplar, size), (as_exemplar(exemplar.pixels[: size[0], : size[1], :1]), (48, 52))):
+        subject = Subject(image=random.random((*other, 3), np.float32), exemplar=one, cache=CACHE)
+        for name, method in methods().items():
+            for found in find_all(subject, method.params(), name):
+                assert found.what.endswith(".")
+
+
 def test_finding_can_be_stopped() -> None:
     subject = labelled("stochastic-gravel", "efros-leung")
 

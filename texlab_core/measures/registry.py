@@ -10,7 +10,6 @@ import logging
 import math
 import pkgutil
 from dataclasses import dataclass
-from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
@@ -105,8 +104,7 @@ class Measure:
         """
         value = subject.given.get(self.id)
         if value is None and self.function is not None and subject.has(self.needs):
-            # Numbers and findings ask for the same ones.
-            value = subject.once(f"measure {self.id}", partial(self.function, subject))
+            value = self.function(subject)
         if value is None or not math.isfinite(value):
             return None
         return min(max(float(value), self.low), self.high)

@@ -15,12 +15,16 @@ _TAU = multiply("tau", 0.5, "Halve τ to {value} gray levels.", least=1.0)
 def _noise(case: Case) -> Seen | None:
     if not case.fires():
         return None
-    shape = case.subject.image.shape[:2]
+    back = case.value("block-distance-back")
+    far = (
+        ""
+        if back is None
+        else ", and half of the exemplar's blocks are "
+        f"{case.text('block-distance-back')} and more from any in the result"
+    )
     return Seen(
-        f"Noise: {case.text('specks')} of the pixels stand out from their neighbours (1% do in the "
-        "exemplar), and half "
-        f"of the exemplar's blocks are {case.text('block-distance-back')} and more from any in the result.",
-        densest(speck_map(case.subject), shape),
+        f"Noise: {case.text('specks')} of the pixels stand out from their neighbours (1% in the exemplar){far}.",
+        densest(speck_map(case.subject), case.subject.image.shape[:2]),
     )
 
 
