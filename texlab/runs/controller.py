@@ -13,8 +13,10 @@ from texlab.runs.column_run import with_exemplar
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
+from texlab.runs.kept_points import KeptPoints
 from texlab.runs.slots import Slots
 from texlab.runs.sweep_runner import SweepRunner
+from texlab.runs.tuning_runner import TuningRunner
 from texlab.runs.worker import Request, Worker
 from texlab.state.changes import rescaled
 from texlab.state.difference import difference
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
     from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan
+    from texlab.state.tuning import TuningPlan
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
 
@@ -75,6 +78,9 @@ class Controller(QObject):
         self._refresh.timeout.connect(self._announce)
         self._sweeps = SweepRunner(self.slots, self.warmth, self)
         self._sweeps.changed.connect(self._refresh.start)
+        self._tuning = TuningRunner(self.slots, self.warmth, self)
+        self._tuning.changed.connect(self._refresh.start)
+        self._points = KeptPoints()
         self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
@@ -96,8 +102,17 @@ class Controller(QObject):
         columns = tuple(
             self._runners[column.id].scene for column in self.session.state.columns if column.id in self._runners
         )
-        session, sweep = self.session, self._sweeps.scene
-        return Scene(self.exemplar, columns, session.selected_id, self._probe, sweep, session.state.seed)
+        self._points.note(columns)
+        return Scene(
+            self.exemplar,
+            columns,
+            self.session.selected_id,
+            self._probe,
+            self._sweeps.scene,
+            self.session.state.seed,
+            self._tuning.scene,
+            self._points.points,
+        )
 
     def column_scene(self, column_id: int) -> ColumnScene | None:
         """Return what one column shows."""
@@ -237,6 +252,14 @@ class Controller(QObject):
         """Stop the sweep; the finished cells stay."""
         self._sweeps.stop()
 
+    def run_tuning(self, column_id: int, plan: TuningPlan) -> None:
+        """Search for parameters of a column's method instead of a search that runs."""
+        self._tuning.start(plan, self.session.state, column_id, self.exemplar)
+
+    def stop_tuning(self) -> None:
+        """Stop the search; its points stay."""
+        self._tuning.stop()
+
     def once(
         self,
         name: str,
@@ -264,8 +287,8 @@ class Controller(QObject):
         self._runners.clear()
         self._leaving.clear()
 
-    def _threads(self) -> list[ColumnRunner | Preparation | SweepRunner | Worker | Errands]:
-        others = (self._preparation, self._sweeps, self._warming, self._errands)
+    def _threads(self) -> list[ColumnRunner | Preparation | SweepRunner | TuningRunner | Worker | Errands]:
+        others = (self._preparation, self._sweeps, self._tuning, self._warming, self._errands)
         return [*self._runners.values(), *self._leaving, *others]
 
     # The session has changed.

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.sweeps import SweepPlan
+    from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Mark
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
@@ -175,6 +176,19 @@ class StopSweep:
     """Stop the sweep; the finished cells stay."""
 
 
+@dataclass(frozen=True)
+class RunTuning:
+    """Search for parameters of a column's method instead of a search that runs."""
+
+    column_id: int
+    plan: TuningPlan
+
+
+@dataclass(frozen=True)
+class StopTuning:
+    """Stop the search for parameters; its points stay."""
+
+
 @dataclass(frozen=True, eq=False)
 class TakeCell:
     """Give a column the parameters of a cell of a sweep (and its seed, when that was varied), and choose it.
@@ -207,5 +221,7 @@ Intention = (
     | AskOnce
     | RunSweep
     | StopSweep
+    | RunTuning
+    | StopTuning
     | TakeCell
 )

@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from texlab.state.sweeps import NO_SWEEP, SweepScene
+from texlab.state.tuning import NO_TUNING, TuningScene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from texlab.state.sweeps import ShownCell
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
@@ -122,6 +124,10 @@ class Scene:
         The newest sweep.
     seed
         Of all columns.
+    tuning
+        The newest search for parameters.
+    points
+        Every finished and measured run of the columns in this session, with a small picture, the newest last.
     """
 
     exemplar: ImageInput | None = None
@@ -130,6 +136,8 @@ class Scene:
     probe: Probe | None = None
     sweep: SweepScene = NO_SWEEP
     seed: int = 1
+    tuning: TuningScene = NO_TUNING
+    points: tuple[ShownCell, ...] = ()
 
     @property
     def selected(self) -> ColumnScene | None:

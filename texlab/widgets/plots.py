@@ -159,6 +159,15 @@ class Plot(QWidget):
             self._paint(self._series[-1], self._theme)
         return item
 
+    def points(self, x: ArrayLike, y: ArrayLike, role: Role, size: float = 8) -> Any:
+        """Add points of ``size`` pixels."""
+        item = pg.ScatterPlotItem(x=np.asarray(x, np.float64), y=np.asarray(y, np.float64), size=size)
+        self._series.append(_Series(item, role, "solid", 1, filled=True))
+        self.view.addItem(item)
+        if self._theme is not None:
+            self._paint(self._series[-1], self._theme)
+        return item
+
     def text(self, x: float, y: float, words: str, role: Role, anchor: tuple[float, float] = (0, 1)) -> Any:
         """Write words at a place of the axes; they do not change the range."""
         item = pg.TextItem(words, anchor=anchor)

@@ -18,8 +18,10 @@ from texlab.state.intentions import (
     Pin,
     Point,
     RunSweep,
+    RunTuning,
     ShowMarks,
     StopSweep,
+    StopTuning,
     TakeCell,
     Tell,
 )
@@ -98,6 +100,10 @@ class Carrier:
                 controller.run_sweep(column_id, plan)
             case StopSweep():
                 controller.stop_sweep()
+            case RunTuning(column_id, plan):
+                controller.run_tuning(column_id, plan)
+            case StopTuning():
+                controller.stop_tuning()
             case TakeCell():
                 self._take(intention)
             case _:
@@ -117,5 +123,5 @@ class Carrier:
             self._controller.problem.emit(f"No column runs {title} any more; add one to take the parameters.")
             return
         state, column_id = found
-        self._session.apply(state, f"sweep {cell.setting}")
+        self._session.apply(state, f"sweep {cell.setting}" if cell.setting else "parameters of a point")
         self._choose(column_id)

@@ -1,0 +1,270 @@
+"""D against V: what is plotted and where, by plain data; the search and a click, with real events in a session."""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dock_scenes import check_controls
+from PySide6.QtCore import QPointF, Qt
+from stub_method import StubParams, exemplar, stub  # noqa: F401
+
+from texlab.docks.host import DockHost
+from texlab.docks.tuning.dock import TuningDock
+from texlab.docks.tuning.points import (
+    D,
+    Placed,
+    V,
+    axes_of,
+    describe_cell,
+    groups_of,
+    knob_choices,
+    limit_choices,
+    nearest,
+    placed,
+    settings,
+    zone_lines,
+)
+from texlab.runs.controller import Controller
+from texlab.runs.kept_points import MOST, KeptPoints, small
+from texlab.runs.slots import Slots
+from texlab.state.intentions import RunTuning, StopTuning, TakeCell
+from texlab.state.scene import ColumnScene, Scene
+from texlab.state.session import Column, Sample, Session, State
+from texlab.state.sweeps import ShownCell, SweepScene
+from texlab.state.tuning import TuningPlan, TuningScene
+from texlab.style.theme import DARK, LIGHT
+from texlab.window.carrier import Carrier
+from texlab_core.engine.job import Job
+from texlab_core.engine.result import Result
+from texlab_core.errors import Cancelled, ParamError
+from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.sheets.sweep import Cell, Sweep, Vary
+
+pytestmark = pytest.mark.usefixtures("stub")
+PATIENCE_MS = 20_000
+
+
+def job_of(level=1.0, seed=0, image=None):
+    inputs = {"exemplar": image or exemplar()}
+    return Job(method="stub", inputs=inputs, params=StubParams(level=level), size=(24, 32), seed=seed)
+
+
+def shown_of(d, v, level=1.0, index=0, image=None, **more):
+    job = job_of(level, image=image)
+    picture = np.full((4, 4, 3), 9, np.uint8)
+    return ShownCell(Cell(index=index, job=job, values={}, measures={D: d, V: v, **more}), picture)
+
+
+def test_groups_are_the_search_the_sweep_and_the_methods():
+    sweep = Sweep(job_of(), (Vary("level", (0.5, 1.0, 2.0)), Vary("seed", (1, 2))))
+    cells = [shown_of(-index, 0.1 * index, index=index) for index in (4, 0, 1, 3)]
+    other = shown_of(-1, 0.5, image=exemplar(height=17))
+    bare = replace_measures(shown_of(0, 0), {})
+    scene = Scene(
+        exemplar=exemplar(),
+        sweep=SweepScene(sweep=sweep, cells=(*cells, other)),
+        tuning=TuningScene(trials=(shown_of(-3, 0.4), bare)),
+        points=(shown_of(-2, 0.3), other),
+    )
+    search, swept, stub_runs = groups_of(scene)
+    assert (search.title, swept.title, stub_runs.title) == ("search", "sweep", "Stub")
+    assert (len(search.cells), len(stub_runs.cells)) == (1, 1)
+    # In the order of the grid; each row of it is a curve.
+    assert [each.cell.index for each in swept.cells] == [0, 1, 3, 4]
+    assert swept.curves == ((0, 1), (2, 3))
+    assert groups_of(Scene()) == ()
+
+
+def replace_measures(shown, measures):
+    return ShownCell(replace(shown.cell, measures=measures), shown.picture)
+
+
+@pytest.mark.parametrize(
+    ("axis", "curves"),
+    [(Vary("level", (0.5, 1.0)), ((0, 1),)), (Vary("seed", (1, 2)), ()), (Vary("exact", (False, True)), ())],
+)
+def test_only_numbers_make_curves(axis, curves):
+    scene = SweepScene(sweep=Sweep(job_of(), (axis,)), cells=(shown_of(0, 0, index=0), shown_of(1, 1, index=1)))
+    assert groups_of(Scene(exemplar=exemplar(), sweep=scene))[0].curves == curves
+
+
+def test_points_need_both_measures():
+    cells = (shown_of(-3, 0.5), replace_measures(shown_of(0, 0), {D: -1.0}), shown_of(-2, math.nan))
+    first, second, third = placed(cells, D, V)
+    assert (first.x, first.y, second, third) == (-3, 0.5, None, None)
+    assert [each.x for each in placed(cells[:1], V, D)] == [0.5]
+    titles = dict(axes_of(groups_of(Scene(exemplar=exemplar(), points=(shown_of(0, 0, cuts=3.0),)))))
+    assert {"D", "V", "cuts"} == set(titles)
+
+
+def test_the_nearest_point_is_measured_in_pixels():
+    points = [Placed(0, 0, shown_of(0, 0)), Placed(1, 0, shown_of(0, 0)), Placed(1, 0, shown_of(0, 0))]
+    assert nearest(points, 0.1, 0, (0.01, 1)) is points[0]
+    assert nearest(points, 0.5, 0, (0.01, 1)) is None
+    # Across, twelve pixels are .12; up, they are twelve. Of two at one place the upper one counts.
+    assert nearest(points, 0.95, 9, (0.01, 1)) is points[2]
+
+
+def test_words():
+    assert zone_lines(D) == ((-3.4, "good"), (-2.1, "bad"))
+    assert zone_lines(V) == ()
+    assert settings(DeBonetParams()) == "the defaults"
+    assert settings(DeBonetParams(alpha=0.2, coarsest_side=1)) == "alpha 0.2, coarsest side 1"
+    told = describe_cell(shown_of(-3.2, 0.5, level=2.0).cell, D, V)
+    assert told.startswith("Stub: D -3.20, V 0.50; level 2")
+    assert told.endswith("seed 0")
+    assert [value for _, value in limit_choices(-2.9)] == [-3.1, -3.4, "start", -2.9]
+    assert knob_choices("de-bonet")[0] == ("thresholds", ())
+    assert ("level", ("level",)) in knob_choices("stub")
+
+
+def test_finished_runs_are_kept_once_and_the_oldest_go():
+    kept = KeptPoints()
+    image = np.random.default_rng(0).random((300, 200, 3), np.float32)
+
+    def column(level, measures, **more):
+        result = Result(image=image, job=job_of(level), model=None, elapsed_s=0.1, versions={})
+        fields = {"id": 3, "method": "stub", "title": "Stub", "params": StubParams(), "status": "finished"}
+        return ColumnScene(**(fields | {"result": result, "measures": measures} | more))
+
+    first, later = {D: -3.0}, {D: -3.0, V: 0.5}
+    kept.note([column(0.5, first), column(1.0, {}), column(2.0, first, draft=True)])
+    kept.note([column(0.5, later)])
+    (only,) = kept.points
+    assert only.cell.measures is later
+    assert np.array_equal(only.picture, small(image))
+    assert max(only.picture.shape[:2]) <= 128
+    before = kept.points
+    kept.note([column(0.5, later)])
+    assert kept.points is before
+    kept.note([column(0.5 + place / 1000, dict(later)) for place in range(1, MOST + 1)])
+    assert len(kept.points) == MOST
+    assert kept.points[-1].cell.job.params.level == 0.5 + MOST / 1000
+
+
+class Bench:
+    """A session, a controller and the dock, wired as in the window."""
+
+    def __init__(self, qtbot):
+        self.session = Session()
+        self.controller = Controller(self.session)
+        self.dock = TuningDock()
+        self.host = DockHost(self.dock, Slots(1))
+        self.carrier = Carrier(self.controller, self.session.select, lambda source: None, lambda marks: None)
+        self.intended = []
+        self.dock.intention.connect(self.intended.append)
+        self.dock.intention.connect(self.carrier.carry_out)
+        self.controller.scene_changed.connect(self.host.show_scene)
+        qtbot.addWidget(self.dock)
+        self.dock.set_theme(LIGHT)
+        self.dock.resize(1000, 420)
+        self.dock.show()
+        qtbot.waitExposed(self.dock)
+        self.session.apply(State(None, (Column(1, "stub", StubParams()),), 5, (48, 64), 2), "start")
+        self.session.select(1)
+        self.session.set_sample(Sample(exemplar(48, 64)))
+        self.session.reset_history()
+        qtbot.waitUntil(lambda: not self.controller.busy, timeout=PATIENCE_MS)
+
+    def close(self):
+        self.host.close()
+        self.controller.close()
+        self.controller.deleteLater()
+
+
+@pytest.fixture
+def bench(qtbot, monkeypatch):
+    monkeypatch.setattr("texlab.docks.tuning.dock.BUDGET", 26)
+    made = Bench(qtbot)
+    yield made
+    made.close()
+
+
+def place_of(dock, point):
+    where = dock.plot.graph.mapFromScene(dock.plot.view.mapViewToScene(QPointF(point.x, point.y)))
+    return where
+
+
+def test_runs_become_points_a_search_adds_more_and_a_click_takes_one(qtbot, bench):
+    dock = bench.dock
+    check_controls(dock)
+    qtbot.waitUntil(lambda: len(dock.points) == 1, timeout=PATIENCE_MS)
+    dock.knobs.setCurrentIndex(dock.knobs.findText("level"))
+    qtbot.mouseClick(dock.suggest_button, Qt.MouseButton.LeftButton)
+    assert bench.intended == [RunTuning(1, TuningPlan(-3.1, ("level",), 26))]
+    qtbot.waitUntil(lambda: len(dock.points) > 3, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not bench.controller.scene().tuning.running, timeout=PATIENCE_MS)
+    tuning = bench.controller.scene().tuning
+    assert tuning.status == "finished", tuning.problem
+    qtbot.waitUntil(lambda: dock.status.text() == tuning.found.sentence, timeout=PATIENCE_MS)
+    usable = {each.params for each in tuning.found.trials if each.usable}
+    assert {each.cell.job.params for each in tuning.trials} == usable
+
+    # The pointer shows a point, a click takes its parameters as one step of the history.
+    viewport = dock.plot.graph.viewport()
+    wanted = dock.points[0]
+    qtbot.mouseMove(viewport, place_of(dock, wanted))
+    qtbot.waitUntil(lambda: dock.over is not None, timeout=PATIENCE_MS)
+    over = dock.over
+    assert (over.x, over.y) == (wanted.x, wanted.y)
+    assert dock.told.text().startswith("Stub: ")
+    assert dock.picture.picture is over.shown.picture
+    qtbot.mouseClick(viewport, Qt.MouseButton.LeftButton, pos=place_of(dock, wanted))
+    assert isinstance(bench.intended[-1], TakeCell)
+    assert bench.session.selected_column.params == over.shown.cell.job.params
+    qtbot.waitUntil(lambda: not bench.controller.busy, timeout=PATIENCE_MS)
+    dock.set_theme(DARK)
+
+
+def test_take_gives_the_column_what_was_found(qtbot, bench):
+    dock = bench.dock
+    dock.knobs.setCurrentIndex(dock.knobs.findText("level"))
+    dock.limit.setCurrentIndex(dock.limit.findData("start"))
+    dock.suggest()
+    qtbot.waitUntil(lambda: bench.controller.scene().tuning.status in ("finished", "failed"), timeout=PATIENCE_MS)
+    tuning = bench.controller.scene().tuning
+    assert tuning.status == "finished", tuning.problem
+    qtbot.waitUntil(lambda: dock._scene.tuning.found is not None, timeout=PATIENCE_MS)
+    assert dock.take_button.isEnabled() == bool(tuning.found.changes)
+    dock.take()
+    assert bench.session.selected_column.params == tuning.found.found
+    qtbot.waitUntil(lambda: not bench.controller.busy, timeout=PATIENCE_MS)
+
+
+def test_stop_keeps_the_points(qtbot, bench, monkeypatch):
+    dock = bench.dock
+
+    def endless(base, knobs, *, on_trial, should_stop, **more):
+        cell = Cell(index=0, job=base, values={}, measures={D: -3.0, V: 0.5}, result=result_of(base))
+        on_trial(None, cell)
+        while not should_stop():
+            threading.Event().wait(0.002)
+        raise Cancelled
+
+    monkeypatch.setattr("texlab.runs.tuning_runner.tune", endless)
+    dock.suggest()
+    qtbot.waitUntil(lambda: len(bench.controller.scene().tuning.trials) == 1, timeout=PATIENCE_MS)
+    qtbot.waitUntil(dock.stop_button.isEnabled, timeout=PATIENCE_MS)
+    qtbot.mouseClick(dock.stop_button, Qt.MouseButton.LeftButton)
+    assert isinstance(bench.intended[-1], StopTuning)
+    qtbot.waitUntil(lambda: bench.controller.scene().tuning.status == "stopped", timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: dock.status.text().startswith("Stopped after 1 runs"), timeout=PATIENCE_MS)
+    assert len(groups_of(bench.controller.scene())[0].cells) == 1
+
+
+def result_of(job):
+    return Result(image=np.full((24, 32, 3), 0.5, np.float32), job=job, model=None, elapsed_s=0.1, versions={})
+
+
+def test_what_cannot_be_searched_is_said(qtbot, bench, monkeypatch):
+    def refuse(*given, **more):
+        raise ParamError("knobs", "numbers", "nothing")
+
+    monkeypatch.setattr("texlab.runs.tuning_runner.tune", refuse)
+    bench.dock.suggest()
+    said = "knobs: must be numbers, got 'nothing'."
+    qtbot.waitUntil(lambda: bench.dock.status.text() == said, timeout=PATIENCE_MS)

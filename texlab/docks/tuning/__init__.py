@@ -1,0 +1,1 @@
+"""D against V: every run a point, and thresholds suggested."""

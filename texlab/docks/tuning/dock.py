@@ -1,0 +1,267 @@
+"""D against V: runs, sweeps and trials as points; thresholds suggested, and taken by a click."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout
+
+from texlab.docks.base import Question
+from texlab.docks.frame import FramedDock, replace_items
+from texlab.docks.tuning.points import (
+    D,
+    V,
+    axes_of,
+    describe_cell,
+    groups_of,
+    knob_choices,
+    limit_choices,
+    nearest,
+    placed,
+    zone_lines,
+)
+from texlab.state.intentions import RunTuning, StopTuning, TakeCell
+from texlab.state.scene import Scene
+from texlab.state.tuning import TuningPlan
+from texlab.widgets.picture_area import PictureArea
+from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plots import SERIES, Plot
+from texlab_core.measures.registry import find_measure
+from texlab_core.sheets.own_line import own_measures
+from texlab_core.sheets.sweep import Cell
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.docks.tuning.points import Placed
+    from texlab.style.theme import Theme
+    from texlab.widgets.plots import Role
+    from texlab_core.engine.inputs import ImageInput
+
+# Runs of a search: about a minute at 128 -> 256 on two quiet cores.
+BUDGET = 480
+# Width of the picture and what is told of it.
+TOLD = 220
+
+
+class TuningDock(FramedDock):
+    """Plots two measures of every run against each other, and searches for better parameters."""
+
+    name = "tuning"
+    title = "D against V"
+    help = "Every run as a point: how different the texture looks against how new it is; click one to take it."
+    order = 62
+    empty = "Open a texture first."
+
+    def build(self) -> None:
+        """Make the controls, the plot, and the place of the picture."""
+        self._scene = Scene()
+        self._drawn: tuple[Any, ...] = ()
+        self.points: list[Placed] = []
+        self.over: Placed | None = None
+        self._build_line()
+        self.plot = Plot("tuning-plot", "Two measures of every run against each other")
+        self.plot.hovered.connect(self._hovered)
+        self.plot.left.connect(lambda: self._point(None))
+        self.plot.clicked.connect(self._clicked)
+        self.picture = PictureArea("tuning-picture", "", "The result of the point under the pointer")
+        self.picture.setFixedWidth(TOLD)
+        self.told = Label("")
+        self.told.setObjectName("tuning-told")
+        self.told.setWordWrap(True)
+        self.told.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.told.setFixedWidth(TOLD)
+        self.progress = QProgressBar()
+        self.progress.setObjectName("tuning-progress")
+        self.progress.setAccessibleName("Progress of the search")
+        self.progress.setRange(0, 1000)
+        self.progress.setTextVisible(False)
+        policy = self.progress.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self.progress.setSizePolicy(policy)
+        self.status = Label("")
+        self.status.setObjectName("tuning-status")
+        self.status.setProperty("role", "muted")
+        # A long line must not widen the window.
+        self.status.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        left = QVBoxLayout()
+        left.setSpacing(2)
+        for widget in (self.status, self.progress):
+            left.addWidget(widget)
+        left.addWidget(self.plot, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.picture, 2)
+        right.addWidget(self.told, 1)
+        layout = QHBoxLayout(self.body)
+        layout.setContentsMargins(6, 0, 6, 6)
+        layout.addLayout(left, 1)
+        layout.addLayout(right)
+
+    def _build_line(self) -> None:
+        self.across = self.add_choice("across", "Across", "The measure across", axes_of(()), self._draw)
+        self.up = self.add_choice("up", "Up", "The measure up", axes_of(()), self._draw)
+        self.across.setCurrentIndex(self.across.findData(D))
+        self.up.setCurrentIndex(self.up.findData(V))
+        self.knobs = self.add_choice("knobs", "What is tuned", "What is tuned", [], self._show_state)
+        self.limit = self.add_choice(
+            "limit", "Limit", "The texture may look no more different than this", limit_choices(None), lambda: None
+        )
+        self.suggest_button = self.add_button(
+            "suggest",
+            "Suggest thresholds",
+            "Search for what makes the most that is new within the limit; every trial becomes a point",
+            self.suggest,
+        )
+        self.stop_button = self.add_button("stop", "Stop", "Stop the search; its points stay", self.stop)
+        self.take_button = self.add_button(
+            "take", "Take", "Give the column the parameters that the search found", self.take
+        )
+
+    def paint_theme(self, theme: Theme) -> None:
+        """Give plot and picture their colours."""
+        self.plot.set_theme(theme)
+        self.picture.set_theme(theme)
+
+    # What there is to show.
+
+    def show_scene(self, scene: Scene) -> None:
+        """Plot what there is, and show how far the search is."""
+        self._scene = scene
+        if scene.exemplar is None:
+            return
+        self.show_body()
+        column = scene.selected
+        replace_items(self.knobs, [] if column is None else knob_choices(column.method))
+        groups = groups_of(scene)
+        for box in (self.across, self.up):
+            replace_items(box, axes_of(groups))
+        own = self._own.get(D)
+        replace_items(self.limit, limit_choices(own))
+        self._draw()
+        self._show_state()
+
+    def question(self, scene: Scene) -> Question | None:
+        """Ask for the exemplar's own line."""
+        self.why = self.empty
+        exemplar = scene.exemplar
+        if exemplar is None:
+            return None
+        given: ImageInput = exemplar
+
+        def compute(should_stop: Callable[[], bool]) -> tuple[str, dict[str, float]]:
+            return given.sha256, own_measures(given, should_stop=should_stop)
+
+        return Question((self.name, exemplar.sha256), compute)
+
+    def show_answer(self, answer: tuple[str, dict[str, float]]) -> None:
+        """Draw the exemplar's own line."""
+        self.show_scene(self._scene)
+
+    @property
+    def _own(self) -> dict[str, float]:
+        """The numbers of another piece of the exemplar's source, as far as they are known."""
+        exemplar = self._scene.exemplar
+        known = self.answer is not None and exemplar is not None and self.answer[0] == exemplar.sha256
+        return self.answer[1] if known else {}
+
+    def _draw(self) -> None:
+        scene = self._scene
+        x, y = self.across.currentData(), self.up.currentData()
+        what = (scene.points, scene.sweep.cells, scene.tuning.trials, scene.exemplar, x, y, tuple(self._own))
+        if len(what) == len(self._drawn) and all(a is b or a == b for a, b in zip(what, self._drawn, strict=True)):
+            return
+        self._drawn = what
+        self._point(None)
+        self.plot.clear()
+        self.points = []
+        for place, group in enumerate(groups_of(scene)):
+            role, line = SERIES[place % len(SERIES)] if group.title != "search" else ("muted", "dot")
+            there = placed(group.cells, x, y)
+            found = [each for each in there if each is not None]
+            self.points += found
+            for curve in group.curves:
+                joined = [each for each in (there[index] for index in curve) if each is not None]
+                if len(joined) > 1:
+                    self.plot.curve([each.x for each in joined], [each.y for each in joined], role, line=line)
+            if found:
+                self.plot.points([each.x for each in found], [each.y for each in found], role)
+                self.plot.text(found[-1].x, found[-1].y, group.title, role)
+        self.plot.set_labels(find_measure(x).title, find_measure(y).title)
+        self.plot.fit()
+        self._draw_lines(x, y)
+
+    def _draw_lines(self, x: str, y: str) -> None:
+        """Draw where good ends and bad begins, and the exemplar's own line, as far as they are in view."""
+        (left, right), (low, high) = self.plot.view.viewRange()
+        own = self._own
+        for name, first, last, is_across in ((x, left, right, True), (y, low, high, False)):
+            lines: list[tuple[float, str, Role]] = [
+                (value, words, "good" if words == "good" else "error") for value, words in zone_lines(name)
+            ]
+            if name in own:
+                lines.append((own[name], "the exemplar's own", "exemplar"))
+            for value, words, role in lines:
+                if not first <= value <= last:
+                    continue
+                across, up = ([value, value], [low, high]) if is_across else ([left, right], [value, value])
+                self.plot.curve(across, up, role, line="dash", width=1)
+                self.plot.text(across[0], up[0], words, role)
+
+    def _show_state(self) -> None:
+        shown = self._scene.tuning
+        self.suggest_button.setEnabled(self._scene.selected is not None and self.knobs.count() > 0)
+        thresholds = self.knobs.currentData() in ((), None)
+        self.suggest_button.setText("Suggest thresholds" if thresholds else "Suggest values")
+        self.stop_button.setEnabled(shown.running)
+        self.take_button.setEnabled(shown.found is not None and bool(shown.found.changes))
+        self.progress.setVisible(shown.running)
+        self.progress.setValue(round(1000 * shown.fraction))
+        words = shown.problem or ("" if shown.found is None else shown.found.sentence)
+        if shown.running:
+            words = f"{len(shown.trials)} runs so far"
+        elif shown.status == "stopped":
+            words = f"Stopped after {len(shown.trials)} runs; click a point to take it"
+        self.status.setText(words)
+        set_tip(self.status, words)
+
+    # What the user does.
+
+    def suggest(self) -> None:
+        """Search instead of a search that runs."""
+        column = self._scene.selected
+        if column is not None:
+            plan = TuningPlan(self.limit.currentData(), self.knobs.currentData() or (), BUDGET)
+            self.intention.emit(RunTuning(column.id, plan))
+
+    def stop(self) -> None:
+        """Stop the search."""
+        self.intention.emit(StopTuning())
+
+    def take(self) -> None:
+        """Take what the search found."""
+        shown = self._scene.tuning
+        if shown.found is not None:
+            job = dataclasses.replace(shown.found.base, params=shown.found.found)
+            self.intention.emit(TakeCell(Cell(index=0, job=job, values={}), (shown.column_id,)))
+
+    def _hovered(self, x: float, y: float) -> None:
+        width, height = self.plot.view.viewPixelSize()
+        self._point(nearest(self.points, x, y, (width, height)))
+
+    def _point(self, found: Placed | None) -> None:
+        if found is self.over:
+            return
+        self.over = found
+        self.picture.set_picture(None if found is None else found.shown.picture)
+        x, y = self.across.currentData(), self.up.currentData()
+        self.told.setText("" if found is None else describe_cell(found.shown.cell, x, y))
+        self.plot.graph.viewport().setCursor(
+            Qt.CursorShape.ArrowCursor if found is None else Qt.CursorShape.PointingHandCursor
+        )
+
+    def _clicked(self) -> None:
+        if self.over is not None:
+            chosen = self._scene.selected_id
+            self.intention.emit(TakeCell(self.over.shown.cell, (chosen, self.over.shown.cell.index)))
