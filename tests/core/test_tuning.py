@@ -22,7 +22,7 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.method import DeBonetParams
-from texlab_core.sheets.tuning import FRESH_SEEDS, tune
+from texlab_core.sheets.tuning import FRESH_SEEDS, SEARCH_SEEDS, tune
 from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
@@ -83,13 +83,13 @@ def job(monkeypatch: pytest.MonkeyPatch) -> Job:
 
 
 def test_it_finds_the_largest_v_within_the_limit(job: Job) -> None:
-    found = tune(job, ("x", "y"), limit=-3.1, budget=150)
+    found = tune(job, ("x", "y"), limit=-3.1, budget=300)
     # At x = .3 the limit allows y = .475 less the noise, and V = y / 2 + .01.
     assert found.kept <= -3.1
     assert found.gained == pytest.approx(0.2475, abs=0.012)
     assert found.found.x == pytest.approx(0.3, abs=0.12)
     assert found.gained > found.base_gained
-    assert len(found.trials) <= 150
+    assert len(found.trials) <= 300
     assert {each.phase for each in found.trials} == {"start", "grid", "steps", "fresh seeds"}
 
 
@@ -102,7 +102,7 @@ def test_the_same_job_gives_the_same_tuning_on_any_number_of_threads(job: Job) -
 def test_a_larger_limit_and_a_larger_budget_never_make_it_worse(job: Job) -> None:
     gains = [tune(job, ("x", "y"), limit=limit, budget=100).gained for limit in (-4.0, -3.5, -3.0, -2.5)]
     assert gains == sorted(gains)
-    gains = [tune(job, ("x", "y"), limit=-3.1, budget=count).gained for count in (40, 80, 160)]
+    gains = [tune(job, ("x", "y"), limit=-3.1, budget=count).gained for count in (60, 120, 240)]
     assert gains == sorted(gains)
 
 
@@ -124,7 +124,7 @@ def test_what_fails_is_reported_and_not_chosen(job: Job) -> None:
     assert {each.error for each in found.trials if each.params.x > 0.99} == {"Too far."}
     assert found.found.x <= 0.99
     report = found.to_json()
-    assert [each["discriminability"] for each in report["trials"] if each["error"]] == [None]
+    assert [each["discriminability"] for each in report["trials"] if each["error"]] == [None] * SEARCH_SEEDS
 
 
 def test_nothing_better_says_so_and_keeps_the_start(job: Job) -> None:
@@ -144,7 +144,10 @@ def test_every_point_is_told_once_with_its_picture(job: Job) -> None:
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     fresh = [each for each in found.trials if each.phase == "fresh seeds"]
-    assert {each.seed for each in fresh}.isdisjoint({job.seed})
+    searched = {each.seed for each in found.trials if each.phase != "fresh seeds"}
+    assert job.seed in searched
+    assert len(searched) == SEARCH_SEEDS
+    assert {each.seed for each in fresh}.isdisjoint(searched)
     assert len({each.seed for each in fresh}) == FRESH_SEEDS
 
 
@@ -231,7 +234,7 @@ def test_thresholds_go_from_alpha_and_side_to_rows_to_cells() -> None:
     start = measure(DeBonetParams())
     tried = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
     phases = [phase for place, (phase, _) in enumerate(tried) if place == 0 or tried[place - 1][0] != phase]
-    assert phases == ["alpha and coarsest side", "rows", "cells"]
+    assert phases == ["alpha and coarsest side", "patches", "alpha and coarsest side", "rows", "cells"]
     best = best_of([each for _, each in tried], -3.9, start)
     assert best.params.coarsest_side == 2
     assert not best.params.fit_filters

@@ -39,6 +39,8 @@ DEFAULT_LIMIT = -3.1
 # Runs: alpha, coarsest side and rows take about 100 of them, single cells the others.
 DEFAULT_BUDGET = 480
 MAX_BUDGET = 5000
+# Every setting is tried with this many seeds, the job's own first: D scatters by .15 from seed to seed.
+SEARCH_SEEDS = 2
 # Seeds that the search never saw, and how far below the limit candidates for them are looked for.
 FRESH_SEEDS = 3
 MARGINS = (0.0, 0.1, 0.2, 0.4)
@@ -199,9 +201,10 @@ class _Search:
     run: Callable[..., tuple[Cell, ...]]
     trials: list[Trial] = field(default_factory=list)
     known: dict[tuple[Params, int], Trial] = field(default_factory=dict)
+    found: list[Measured] = field(default_factory=list)
 
-    def try_all(self, phase: str, asked: Sequence[tuple[Params, int]], reserve: int) -> list[Trial]:
-        """Run what was not run before, as far as the budget reaches; return what is known then, in order."""
+    def try_all(self, phase: str, asked: Sequence[tuple[Params, int]], reserve: int) -> None:
+        """Run what was not run before, as far as the budget reaches."""
         new = [each for place, each in enumerate(asked) if each not in asked[:place] and each not in self.known]
         room = max(0, self.budget - reserve - len(self.trials))
         jobs: list[Job] = []
@@ -222,7 +225,19 @@ class _Search:
                 )
         if jobs:
             self._run(phase, jobs)
-        return [self.known[each] for each in asked if each in self.known]
+
+    def means(self, phase: str, params: Sequence[Params], seeds: Sequence[int], reserve: int) -> list[Measured]:
+        """Try parameters with several seeds; return the means of those that are known with every seed."""
+        self.try_all(phase, [(each, seed) for each in params for seed in seeds], reserve)
+        found = []
+        for each in params:
+            known = [self.known[each, seed] for seed in seeds if (each, seed) in self.known]
+            if len(known) == len(seeds):
+                kept = sum(trial.kept for trial in known) / len(known)
+                gained = sum(trial.gained for trial in known) / len(known)
+                found.append(Measured(params=each, kept=kept, gained=gained))
+        self.found += found
+        return found
 
     def _keep(self, trial: Trial) -> None:
         self.trials.append(trial)
@@ -324,10 +339,13 @@ def tune(
     search = _Search(base, budget, on_trial, on_progress, run)
     # Checked before anything runs.
     rounds = _rounds(base, knobs, cache)
-    start = search.try_all("start", [(base.params, base.seed)], 0)[0]
+    seeds = _seeds(base)
+    start = search.means("start", [base.params], seeds[:SEARCH_SEEDS], 0)[0]
     if not start.usable:
         title = find_measure(KEPT).title
-        why = start.error or f"{title} and {find_measure(GAINED).title} cannot be said about its result."
+        why = (
+            search.trials[0].error or f"{title} and {find_measure(GAINED).title} cannot be said about its result."
+        )
         raise InputError(f"What tuning begins with cannot be used: {why}")
     allowed = start.kept if limit == "start" else float(limit)
     reserve = FRESH_SEEDS * (len(MARGINS) + 1)
@@ -335,16 +353,23 @@ def tune(
     try:
         phase, params = next(asked)
         while len(search.trials) < budget - reserve:
-            answer = search.try_all(phase, [(each, base.seed) for each in params], reserve)
+            answer = search.means(phase, params, seeds[:SEARCH_SEEDS], reserve)
             phase, params = asked.send(answer)
     except StopIteration:
         pass
     finally:
         asked.close()
-    return _decide(search, start, limit, allowed, tuple(knobs))
+    return _decide(search, start, limit, allowed, seeds[SEARCH_SEEDS:], tuple(knobs))
 
 
-def _rounds(base: Job, knobs: Sequence[str], cache: AnalysisCache) -> Callable[[Trial, float], Rounds]:
+def _seeds(base: Job) -> list[int]:
+    """Return the seeds of the search, the job's own first, then the fresh ones; all differ."""
+    drawn = Streams(base.seed)("tuning seeds").choice(MAX_SEED - 1, SEARCH_SEEDS - 1 + FRESH_SEEDS, replace=False)
+    # Those from the job's own on are moved up by one.
+    return [base.seed, *(int(each) + (each >= base.seed) for each in drawn)]
+
+
+def _rounds(base: Job, knobs: Sequence[str], cache: AnalysisCache) -> Callable[[Measured, float], Rounds]:
     from texlab_core.engine.params import describe
     from texlab_core.engine.registry import find_method
     from texlab_core.methods.de_bonet.method import DeBonetParams
@@ -374,24 +399,18 @@ def _rounds(base: Job, knobs: Sequence[str], cache: AnalysisCache) -> Callable[[
     raise InputError(f"{method.title} has no thresholds: say which of its numbers are to be tuned (knobs).")
 
 
-def _decide(search: _Search, start: Trial, limit: Limit, allowed: float, knobs: tuple[str, ...]) -> Tuning:
+def _decide(
+    search: _Search, start: Measured, limit: Limit, allowed: float, seeds: list[int], knobs: tuple[str, ...]
+) -> Tuning:
     """Measure the best ones and the start again, on seeds that the search never saw, and choose."""
     base = search.base
-    own = [each for each in search.trials if each.usable]
+    own = [each for each in search.found if each.usable]
     chosen: list[Params] = [start.params]
     for margin in MARGINS:
         best = max(own, key=lambda each: each.rank(allowed - margin))
         if best.params not in chosen:
             chosen.append(best.params)
-    seeds = [int(each) for each in Streams(base.seed)("tuning seeds").integers(0, MAX_SEED, FRESH_SEEDS)]
-    asked = [(params, seed) for params in chosen for seed in seeds]
-    search.try_all("fresh seeds", asked, 0)
-    means = []
-    for params in chosen:
-        fresh = [search.known[params, seed] for seed in seeds if (params, seed) in search.known]
-        kept = sum(each.kept for each in fresh) / max(1, len(fresh))
-        gained = sum(each.gained for each in fresh) / max(1, len(fresh))
-        means.append(Measured(params=params, kept=kept, gained=gained))
+    means = search.means("fresh seeds", chosen, seeds, 0)
     if limit == "start":
         allowed = means[0].kept
     best_mean = max(means, key=lambda each: each.rank(allowed))

@@ -1,4 +1,4 @@
-"""Which thresholds of De Bonet to try: alpha and the coarsest side, then rows of the table, then single cells."""
+"""Which thresholds of De Bonet to try: alpha, coarsest side and patches, then rows of the table, then cells."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ SIDES = (1, 2, 4, 8, 16)
 # What rows, and cells, are multiplied by.
 ROW_FACTORS = (0.5, 0.7, 1.4, 2.0)
 CELL_FACTORS = (0.25, 4.0)
+# Widths of the patches of the coarsest level, and alphas that go with them.
+PATCHES = (0.2, 0.25, 0.3, 0.35, 0.4)
+PATCH_ALPHAS = (0.05, 0.1, 0.2)
 # Alphas between two of the grid.
 HALVINGS = 2
 # Rows are gone through again while this helps.
@@ -29,7 +32,7 @@ ROW_TURNS = 2
 def threshold_rounds(
     start: Measured, shape_of: Callable[[Params], tuple[int, tuple[str, ...]]], limit: float, streams: Streams
 ) -> Rounds:
-    """Look at alpha and the coarsest side together, halve alpha's steps, then vary rows, then cells.
+    """Look at alpha with the coarsest side, then with the patches; halve alpha's steps; vary rows, then cells.
 
     Parameters
     ----------
@@ -47,6 +50,12 @@ def threshold_rounds(
     best = start
     grid = [_sided(first, side).replace(alpha=alpha) for side in SIDES for alpha in ALPHAS]
     best = best_of((yield phase, list(grid)), limit, best)
+    if first.coarsest == "patches":
+        found = cast("DeBonetParams", best.params)
+        sided = [first] if found.coarsest_side == first.coarsest_side else [first, found]
+        alphas = sorted({*PATCH_ALPHAS, found.alpha})
+        patches = [each.replace(patch=width, alpha=a) for each in sided for width in PATCHES for a in alphas]
+        best = best_of((yield "patches", list(patches)), limit, best)
     step = ALPHAS[1] - ALPHAS[0]
     for _ in range(HALVINGS):
         step /= 2
