@@ -77,6 +77,8 @@ def test_json_is_exactly_one_object(texlab: Texlab, ramp: Path) -> None:
     exemplar = made.pop("exemplar")
     assert (exemplar["name"], exemplar["size"]) == ("ramp.png", {"width": 16, "height": 8})
     assert re.fullmatch("[0-9a-f]{64}", exemplar["sha256"])
+    # Too small to be examined.
+    assert made.pop("findings") == []
     assert {"mean", "w1-pixels", "spectral-distance"} < made.pop("measures").keys()
     assert made.pop("curves")["distance"]["y"] == [0.5, 0.25]
     assert made == {

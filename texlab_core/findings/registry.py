@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 # Installed packages add detectors of their own by entry points of this group; each names a module.
 ENTRY_POINTS = "texlab_core.findings"
 OTHER = ""
+# Smaller pictures and exemplars are not examined: limits come from sides of 128 and 256 pixels.
+SMALLEST = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +217,7 @@ def find_all(subject: Subject, params: Params | None = None, method: str | None 
     Parameters
     ----------
     subject
-        The picture, with its exemplar where there is one: without it nearly nothing can be said.
+        The picture with its exemplar; nothing is found without one, or where either is under 32 pixels.
     params
         The method's parameters, where they are known.
     method
@@ -226,6 +228,8 @@ def find_all(subject: Subject, params: Params | None = None, method: str | None 
     Cancelled
         When ``subject.look`` says so.
     """
+    if subject.exemplar is None or min(*subject.image.shape[:2], *subject.exemplar.size) < SMALLEST:
+        return ()
     case = Case(subject, subject.method if method is None else method, params)
     found = []
     for each in detectors().values():
