@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from texlab_core.engine.inputs import Crop
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.sheets.own_line import own_measures
+
 if TYPE_CHECKING:
     from conftest import Texlab
 
@@ -58,6 +62,13 @@ def test_for_people_and_any_numbers(texlab: Texlab) -> None:
     assert said == [f"  iterations = {preset['parameters']['iterations']}"] or not said
 
 
+def test_the_limit_may_be_the_exemplars_own(texlab: Texlab) -> None:
+    words = ("tune", *GRAVEL, "--size", "64x64", "--limit", "own", "--budget", "24", "--out", "a.json", "--json")
+    told = json.loads(texlab(*words).out)
+    exemplar = as_exemplar(GRAVEL[0], crop=Crop(top=40, left=40, height=64, width=64))
+    assert told["limit"] == own_measures(exemplar, ("discriminability",))["discriminability"]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -68,6 +79,7 @@ def test_for_people_and_any_numbers(texlab: Texlab) -> None:
         (("--method", "tiling"), "Tiling has no thresholds: say which of its numbers are to be tuned (knobs)."),
         (("--limit", "low"), "limit: must be a number, got 'low'."),
         (("--limit", "nan"), "limit: must be a number, or start"),
+        (("--limit", "own", "--crop", "250x250+0+0"), "The exemplar's own D is not known"),
         (("--budget", "9"), "budget: must be a whole number from 24 to 5000, got 9."),
         (("--name", "a/b"), "can hold no slash"),
         (("--out", "a.png"), "out: must be a file that ends in .json, got 'a.png'."),

@@ -35,7 +35,7 @@ WRITES = ".json"
 EXAMPLES = """
 thresholds for an image:     texlab tune wall.jpg --out wall.json --size 256x256
 no worse than at first:      texlab tune wall.jpg --out wall.json --limit start
-numbers of another method:   texlab tune wall.jpg --method car --knobs neighbours --out a.json
+numbers of another method:   texlab tune wall.jpg --method efros-leung --knobs eps,window --out el.json
 use what was found:          texlab synth wall.jpg --method de-bonet --preset wall.json --out a.png
 """
 
@@ -58,7 +58,7 @@ def configure(parser: Parser) -> None:
         "--limit",
         default="-3.1",
         metavar="D",
-        help="largest D (default -3.1), or start: that of the first run",
+        help="largest D (default -3.1); start: that of the first run; own: that of another piece of the image",
     )
     parser.add_argument("--budget", default="480", metavar="N", help="most runs, 24 to 5000 (default 480)")
     parser.add_argument("--size", metavar="WxH|WxHxD", help="of the results (default: the exemplar's)")
@@ -75,16 +75,20 @@ def execute(args: argparse.Namespace) -> int:
     from texlab.cli.commands._options import own_presets
     from texlab_core.documents.preset_store import find_preset
     from texlab_core.documents.presets import check_name, write_preset
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.job import Job
     from texlab_core.engine.registry import find_method
-    from texlab_core.errors import ParamError
-    from texlab_core.sheets.tuning import tune
+    from texlab_core.errors import InputError, ParamError
+    from texlab_core.sheets.own_line import own_measures
+    from texlab_core.sheets.tuning import DEFAULT_LIMIT, KEPT, tune
 
     method = find_method(args.method)
     base = None if args.preset is None else find_preset(args.preset, own_presets(), method.id).params()
     params = method.params.parse(parse_settings(args.set), base)
     knobs = [] if args.knobs is None else [each.strip().replace("-", "_") for each in args.knobs.split(",")]
-    limit: Limit = "start" if args.limit == "start" else parse_number("limit", args.limit, float)
+    limit: Limit = "start" if args.limit == "start" else DEFAULT_LIMIT
+    if args.limit not in ("start", "own"):
+        limit = parse_number("limit", args.limit, float)
     budget, seed = parse_number("budget", args.budget, int), parse_number("seed", args.seed, int)
     size = None if args.size is None else parse_result_size(args.size, method.dimensions)
     out, name = output_file(args.out), check_name(args.name)
@@ -100,6 +104,12 @@ def execute(args: argparse.Namespace) -> int:
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
     )
+    if args.limit == "own":
+        exemplar = job.inputs.get("exemplar")
+        own = own_measures(exemplar, (KEPT,), interrupted) if isinstance(exemplar, ImageInput) else {}
+        if KEPT not in own:
+            raise InputError("The exemplar's own D is not known: that takes a --crop of a picture twice as large.")
+        limit = own[KEPT]
     with share_bar(f"tuning {method.id}") as show, logged_quietly():
         found = tune(job, knobs, limit=limit, budget=budget, on_progress=show, should_stop=interrupted)
     write_preset(found.preset(name), out)
