@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import InputError
+from texlab_core.files import strict_json
+from texlab_core.files.whole import write_whole
 from texlab_core.findings.finding import FINDING
 from texlab_core.findings.limits import RULES, Fit
 from texlab_core.measures.calibrate import GOOD, measure_labels, read_labels
@@ -180,7 +182,7 @@ def measured(folder: Path, kept: Path | None, tell: Callable[[int], None] = lamb
     """Return the measures of the labelled results; from the file ``kept`` if it is there, else written to it."""
     labels = read_labels(folder)
     if kept is not None and kept.exists():
-        found = json.loads(kept.read_text(encoding="utf-8"))
+        found = strict_json.load(kept, what=f"values: {kept}")
         values = {name: np.array(found[name], np.float64) for name in needed() if name in found}
         if len(values) == len(needed()) and all(len(each) == len(labels) for each in values.values()):
             return values
@@ -190,7 +192,7 @@ def measured(folder: Path, kept: Path | None, tell: Callable[[int], None] = lamb
     values = measure_labels(folder, labels, needed(), tell)
     if kept is not None:
         lists = {name: [None if np.isnan(x) else float(x) for x in each] for name, each in values.items()}
-        kept.write_text(json.dumps(lists), encoding="utf-8")
+        write_whole(kept, json.dumps(lists).encode())
     return values
 
 
@@ -211,7 +213,7 @@ def main(arguments: Sequence[str]) -> int:
         print(error, file=sys.stderr)
         return 2
     if args.write:
-        Path(__file__).with_name("fitted.py").write_text(source(fits), encoding="utf-8")
+        write_whole(Path(__file__).with_name("fitted.py"), source(fits).encode())
     print(table(fits), end="")
     return 0
 
