@@ -182,3 +182,20 @@ def test_layouts_are_a_function_of_the_seed() -> None:
     one, same, other = (laid(image, (8, 8), (20, 20), seed) for seed in (1, 1, 2))
     np.testing.assert_array_equal(one, same)
     assert (one != other).any()
+
+
+def test_at_its_own_size_a_texture_is_new_unless_nothing_may_differ() -> None:
+    from texlab_core.engine.job import Job
+    from texlab_core.engine.run import run
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.measures.registry import measure_all
+    from texlab_core.measures.subject import Subject
+    from texlab_core.methods.de_bonet.method import DeBonetParams
+
+    exemplar = as_exemplar("gallery:stochastic-gravel")
+    same, new = (
+        run(Job(method="de-bonet", inputs={"exemplar": exemplar}, params=DeBonetParams(alpha=alpha), seed=1))
+        for alpha in (0.0, 0.15)
+    )
+    np.testing.assert_allclose(same.image, exemplar.pixels, atol=1e-6)
+    assert measure_all(Subject.of_result(new), ["laid-down-share"])["laid-down-share"] < 0.5

@@ -52,12 +52,15 @@ class Layout:
         From how many of the places that continue best one is drawn.
     periodic
         Whether the output continues itself, so that its opposite sides are neighbours too.
+    anew
+        Whether ``patches`` lay out an output no larger than the exemplar too, instead of the exemplar itself.
     """
 
     coarsest: Coarsest = "patches"
     patch: float = 0.45
     places: int = 3
     periodic: bool = False
+    anew: bool = False
 
 
 class _Region(NamedTuple):
@@ -73,7 +76,7 @@ def lay_out_steps(
     """Return the source of every location of the coarsest level, in raster order.
 
     An output no larger than the exemplar is not shifted, so that it can be the exemplar itself; where it is to
-    continue itself, ``patches`` and ``fit`` lay it out all the same.
+    continue itself, ``patches`` and ``fit`` lay it out all the same, and ``patches`` where it is to be new.
 
     Parameters
     ----------
@@ -93,7 +96,8 @@ def lay_out_steps(
     """
     fits = output.rows <= exemplar.rows and output.columns <= exemplar.columns
     fitted = layout.coarsest in ("patches", "fit")
-    if fitted and (layout.periodic or not fits):
+    anew = layout.anew and layout.coarsest == "patches"
+    if fitted and (layout.periodic or anew or not fits):
         random = streams(layout.coarsest)
         cyclic = layout.coarsest == "fit"
         room = (exemplar.rows, exemplar.columns) if cyclic else whole

@@ -80,7 +80,7 @@ class DeBonetParams(Params):
     coarsest: Annotated[
         Literal["patches", "fit", "shift", "tile", "iid"],
         Knob(
-            help="How the coarsest level is laid out where the output is larger than the exemplar.",
+            help="How the coarsest level is laid out; all but patches only in outputs larger than the exemplar.",
             choices={
                 "patches": "irregular parts of the exemplar, each from a place that continues its neighbours",
                 "fit": "repeated, every repetition shifted cyclically so that it continues its neighbours",
@@ -364,12 +364,18 @@ def synthesize(
             notes = (f"The output was cropped and does not tile: its sides must be {multiples}.",)
     depth = model.depth
     literal = {"parity": 0, "literal": depth, "mixed": min(depth, params.literal_levels)}
+    thresholds = params.thresholds.matrix(params.alpha, params.beta, depth, model.feature_names)
     preparing = prepare_steps(
         model,
-        params.thresholds.matrix(params.alpha, params.beta, depth, model.feature_names),
+        thresholds,
         size,
         layout=Layout(
-            coarsest=params.coarsest, patch=params.patch, places=params.places, periodic=params.tileable
+            coarsest=params.coarsest,
+            patch=params.patch,
+            places=params.places,
+            periodic=params.tileable,
+            # Where no feature may differ, the input comes back.
+            anew=bool((thresholds > 0).any()),
         ),
         literal_levels=literal[params.siblings],
         streams=streams,
