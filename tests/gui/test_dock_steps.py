@@ -1,11 +1,14 @@
 """The scrubber: slider, keys, playing, and no timer left behind."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from dock_scenes import check_controls, column_of, feed, frames, hover, noise, scene_of, shown
 from PySide6.QtCore import Qt
 
 from texlab.docks.steps import StepsDock
+from texlab.state.intentions import ShowStage
 
 
 @pytest.fixture
@@ -55,12 +58,30 @@ def test_the_slider_itself_takes_keys(dock, qtbot):
 
 
 def test_a_scrubber_that_was_moved_stays(dock):
-    feed(dock, scene(4))
+    kept = frames(6)
+    feed(dock, scene_of(column_of(noise(), frames=kept[:4])))
     dock.slider.setValue(1)
-    feed(dock, scene(6))
+    # The window hands the chosen stage to all tabs.
+    feed(dock, replace(scene_of(column_of(noise(), frames=kept)), stage=kept[1]))
     assert dock.slider.value() == 1
     feed(dock, scene(3, column_id=2))
     assert dock.slider.value() == 2
+    feed(dock, replace(scene_of(column_of(noise(), frames=kept)), stage=kept[1]))
+    assert dock.slider.value() == 1
+    # Another tab has gone back to the result.
+    feed(dock, scene_of(column_of(noise(), frames=kept)))
+    assert dock.slider.value() == 5
+    assert np.array_equal(dock.pane.picture, kept[5].picture)
+
+
+def test_a_stage_that_is_chosen_is_wanted_everywhere_and_the_last_is_the_result(dock):
+    kept, wanted = frames(3), []
+    dock.intention.connect(wanted.append)
+    feed(dock, scene_of(column_of(noise(), frames=kept)))
+    assert wanted == []
+    for place in (0, 1, 2):
+        dock.slider.setValue(place)
+    assert wanted == [ShowStage(1, kept[0]), ShowStage(1, kept[1]), ShowStage(1, None)]
 
 
 def test_play_loops_and_stops_when_hidden(dock, qtbot):

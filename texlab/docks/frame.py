@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from PySide6.QtCore import Qt
@@ -16,6 +17,8 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.docks.base import Dock
+from texlab.docks.recent import Same
+from texlab.state.intentions import ShowStage
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
@@ -25,7 +28,7 @@ from texlab.widgets.readout import Readout
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from texlab.state.scene import ColumnScene
+    from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
 
@@ -38,6 +41,45 @@ def shown_image(column: ColumnScene | None) -> FloatImage | None:
     if column is None:
         return None
     return column.image if column.result is None else column.result.image
+
+
+@dataclass(frozen=True, eq=False)
+class LookedAt:
+    """What the tabs look at: a stage of a run, a result or a preview, or nothing yet.
+
+    Parameters
+    ----------
+    image
+        (H, W, C) float32, or None.
+    stage
+        The stage that is looked at instead.
+    stage_channels
+        Channels that the stage has as values: those of the exemplar.
+    """
+
+    image: FloatImage | None
+    stage: Frame | None = None
+    stage_channels: int = 3
+
+    @property
+    def channels(self) -> int:
+        """Number of channels; 0 while there is nothing."""
+        if self.stage is not None:
+            return self.stage_channels
+        return 0 if self.image is None else self.image.shape[2]
+
+    @property
+    def key(self) -> Same:
+        """Tells it from all others."""
+        return Same(self.image if self.stage is None else self.stage)
+
+    def with_channels(self, channels: int) -> LookedAt:
+        """Return it when it has this number of channels, else nothing."""
+        return self if self.channels == channels else LookedAt(None)
+
+    def values(self) -> FloatImage | None:
+        """Return (H, W, C) float32 in [0, 1], or None; for ``Question.compute``."""
+        return self.image if self.stage is None else self.stage.values(self.stage_channels)
 
 
 class FramedDock(Dock):
@@ -57,6 +99,12 @@ class FramedDock(Dock):
         self.controls = QWidget(self)
         self.controls.setObjectName(f"{self.name}-controls")
         self._line = FlowLayout(self.controls)
+        self.stage_of = 0
+        self.stage_button = QPushButton()
+        self.stage_button.clicked.connect(lambda _: self.intention.emit(ShowStage(self.stage_of, None)))
+        tip = "A stage chosen under Steps is shown instead of the result: click to go back to the result"
+        self.add_control(self.stage_button, "stage", "Back to the result", tip)
+        self.stage_button.hide()
         self.body = QWidget()
         self.body.setObjectName(f"{self.name}-body")
         self._message = Label(self.empty)
@@ -89,6 +137,16 @@ class FramedDock(Dock):
 
     def paint_theme(self, theme: Theme) -> None:
         """Give every plot and picture its colours."""
+
+    def looked_at(self, scene: Scene) -> LookedAt:
+        """Return what to look at in the chosen column, and say so when that is a stage of its run."""
+        stage, exemplar = scene.stage, scene.exemplar
+        self.stage_of = scene.selected_id
+        self.stage_button.setVisible(stage is not None)
+        if stage is None or exemplar is None:
+            return LookedAt(shown_image(scene.selected))
+        self.stage_button.setText(f"Stage: {stage.name} ✕")
+        return LookedAt(None, stage, exemplar.pixels.shape[2])
 
     def ask(self, *_: object) -> None:
         """Ask again because a control was changed."""

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QSlider, QVBoxLayout
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
+from texlab.state.intentions import ShowStage
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label
 
@@ -37,6 +38,7 @@ class StepsDock(FramedDock):
         """Make the scrubber and the picture."""
         self._frames: tuple[Frame, ...] = ()
         self._column = 0
+        self._stage: Frame | None = None
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._advance)
         self.play = self.add_button("play", "Play", "Play the stages in a loop (Space)", self.toggle)
@@ -44,7 +46,7 @@ class StepsDock(FramedDock):
         self.slider.setMinimumWidth(180)
         self.slider.setPageStep(1)
         self.slider.setTickPosition(QSlider.TickPosition.TicksBelow)
-        self.slider.valueChanged.connect(self._show)
+        self.slider.valueChanged.connect(self._choose)
         self.slider.sliderPressed.connect(self.pause)
         self.add_control(self.slider, "slider", "Stage", "Which stage to show (Left, Right, Home, End)")
         self.speed = self.add_choice(
@@ -69,6 +71,16 @@ class StepsDock(FramedDock):
         """Give the pane its colours."""
         self.pane.set_theme(theme)
 
+    def show_scene(self, scene: Scene) -> None:
+        """Stand where the other tabs look: at a stage, or at the end when they look at the result again."""
+        given_back = self._stage is not None and scene.stage is None
+        self._stage = scene.stage
+        if given_back and self._frames and not self.playing:
+            blocked = self.slider.blockSignals(True)
+            self.slider.setValue(len(self._frames) - 1)
+            self.slider.blockSignals(blocked)
+            self._show(len(self._frames) - 1)
+
     def question(self, scene: Scene) -> Question | None:
         """Ask for the chosen column's stages; there is nothing to compute."""
         column = scene.selected
@@ -90,6 +102,8 @@ class StepsDock(FramedDock):
         at_end = column != self._column or self.slider.value() == self.slider.maximum()
         self._column, self._frames = column, frames
         place = len(frames) - 1 if at_end and not self.playing else min(self.slider.value(), len(frames) - 1)
+        if self._stage is not None and not self.playing:
+            place = next((at for at, frame in enumerate(frames) if frame is self._stage), place)
         blocked = self.slider.blockSignals(True)
         self.slider.setRange(0, len(frames) - 1)
         self.slider.setValue(place)
@@ -150,6 +164,13 @@ class StepsDock(FramedDock):
             frame = self._frames[place]
             self.pane.set_picture(frame.picture)
             self.label.setText(f"{frame.name}   {place + 1} of {len(self._frames)}")
+
+    def _choose(self, place: int) -> None:
+        """Show a stage here and in every other tab; the last one is the result itself."""
+        self._show(place)
+        last = place >= len(self._frames) - 1
+        self._stage = None if last else self._frames[place]
+        self.intention.emit(ShowStage(self._column, self._stage))
 
     def _hover(self, row: int, column: int) -> None:
         picture = self.pane.picture

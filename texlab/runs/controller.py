@@ -30,6 +30,7 @@ from texlab_core.warming import Need, Warmth, every_need
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab.state.scene import Frame
     from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
@@ -63,6 +64,7 @@ class Controller(QObject):
         # Large jobs that came with a file from outside wait for the user.
         self._ask_first = False
         self._probe: Probe | None = None
+        self._stage: tuple[int, Frame] | None = None
         self._preparation = Preparation(self)
         self._preparation.ready.connect(self._exemplar_prepared)
         self._preparation.failed.connect(self._exemplar_failed)
@@ -112,7 +114,15 @@ class Controller(QObject):
             self.session.state.seed,
             self._tuning.scene,
             self._points.points,
+            self._stage_of(self.session.selected_id),
         )
+
+    def _stage_of(self, column_id: int) -> Frame | None:
+        """Return the stage chosen in a column, as long as its run keeps it."""
+        runner = self._runners.get(column_id)
+        if self._stage is None or runner is None or self._stage[0] != column_id:
+            return None
+        return next((frame for frame in runner.scene.frames if frame is self._stage[1]), None)
 
     def column_scene(self, column_id: int) -> ColumnScene | None:
         """Return what one column shows."""
@@ -200,6 +210,11 @@ class Controller(QObject):
         """Keep asking about a pixel; the same pixel again lets go of it."""
         wanted = Probe(column_id, row, column, pinned=True)
         self._set_probe(None if self._probe == wanted or row < 0 else wanted)
+
+    def show_stage(self, column_id: int, stage: Frame | None) -> None:
+        """Let the tabs look at a stage of a column's run; None goes back to the result."""
+        self._stage = None if stage is None else (column_id, stage)
+        self._refresh.start()
 
     def _set_probe(self, probe: Probe | None) -> None:
         if probe != self._probe:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab.state.scene import Frame
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Mark
@@ -122,6 +123,14 @@ class Pin:
 
 
 @dataclass(frozen=True)
+class ShowStage:
+    """Let every tab look at a stage of a column's run; None goes back to the result."""
+
+    column_id: int
+    stage: Frame | None
+
+
+@dataclass(frozen=True)
 class ShowMarks:
     """Outline these places in the exemplar, and no others."""
 
@@ -215,6 +224,7 @@ Intention = (
     | ChooseColumn
     | Point
     | Pin
+    | ShowStage
     | ShowMarks
     | Open
     | Tell

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
@@ -28,6 +31,18 @@ class Frame:
 
     name: str
     picture: Picture
+
+    def values(self, channels: int) -> FloatImage:
+        """Return (H, W, ``channels``) float32 in [0, 1]: always the same array, made when first wanted."""
+        return self._gray if channels == 1 else self._colour
+
+    @cached_property
+    def _colour(self) -> FloatImage:
+        return np.multiply(self.picture, np.float32(1 / 255), dtype=np.float32)
+
+    @cached_property
+    def _gray(self) -> FloatImage:
+        return np.multiply(self.picture[..., :1], np.float32(1 / 255), dtype=np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +143,8 @@ class Scene:
         The newest search for parameters.
     points
         Every finished and measured run of the columns in this session, with a small picture, the newest last.
+    stage
+        The stage of the chosen column's run that the tabs look at; None: its result, or its newest preview.
     """
 
     exemplar: ImageInput | None = None
@@ -138,6 +155,7 @@ class Scene:
     seed: int = 1
     tuning: TuningScene = NO_TUNING
     points: tuple[ShownCell, ...] = ()
+    stage: Frame | None = None
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -20,6 +20,7 @@ from texlab.state.intentions import (
     RunSweep,
     RunTuning,
     ShowMarks,
+    ShowStage,
     StopSweep,
     StopTuning,
     TakeCell,
@@ -88,6 +89,8 @@ class Carrier:
                 controller.point_at(column_id, row, place)
             case Pin(column_id, row, place):
                 controller.pin(column_id, row, place)
+            case ShowStage(column_id, stage):
+                controller.show_stage(column_id, stage)
             case ShowMarks(marks):
                 self._show_marks(marks)
             case Open(source):

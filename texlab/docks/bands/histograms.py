@@ -12,7 +12,7 @@ from texlab.docks.bands.comparison import Comparison, compare
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, replace_items, shown_image
+from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
 from texlab.widgets.plain import set_tip
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
@@ -139,18 +139,16 @@ class HistogramsDock(FramedDock):
         if scene.exemplar is None:
             return None
         exemplar = scene.exemplar.pixels
-        result = shown_image(scene.selected)
-        if result is not None and result.shape[2] != exemplar.shape[2]:
-            result = None
+        result = self.looked_at(scene).with_channels(exemplar.shape[2])
         self.pyramid.follow(scene)
         self._fill_lists(exemplar.shape[2])
         settings = self._settings()
         cache = self._cache
 
         def compute(should_stop: Callable[[], bool]) -> tuple[Comparison, ...]:
-            return comparisons(exemplar, result, settings, cache, should_stop)
+            return comparisons(exemplar, result.values(), settings, cache, should_stop)
 
-        return Question((self.name, Same(exemplar), Same(result), settings), compute)
+        return Question((self.name, Same(exemplar), result.key, settings), compute)
 
     def show_answer(self, answer: tuple[Comparison, ...]) -> None:
         """Draw the distributions and fill in the numbers."""

@@ -14,7 +14,7 @@ from texlab.docks.bands.detail import BandDetail
 from texlab.docks.bands.mosaic_view import MosaicView
 from texlab.docks.bands.pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, replace_items, shown_image
+from texlab.docks.frame import FramedDock, LookedAt, replace_items
 from texlab.docks.recent import Recent, Same
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
@@ -145,20 +145,18 @@ class PyramidDock(FramedDock):
         if scene.exemplar is None:
             return None
         exemplar = scene.exemplar.pixels
-        result = shown_image(scene.selected)
-        if result is not None and result.shape[2] != exemplar.shape[2]:
-            result = None
+        result = self.looked_at(scene).with_channels(exemplar.shape[2])
         self.pyramid.follow(scene)
         replace_items(self.channel, channel_items(exemplar.shape[2]))
-        request = self._request(exemplar.shape[:2], has_result=result is not None)
+        request = self._request(exemplar.shape[:2], has_result=result.channels > 0)
         if request.editing:
-            result = None
+            result = LookedAt(None)
         pictures = self._pictures
 
         def compute(should_stop: Callable[[], bool]) -> PyramidAnswer:
-            return pictures.answer(exemplar, result, request, should_stop)
+            return pictures.answer(exemplar, result.values(), request, should_stop)
 
-        return Question((self.name, Same(exemplar), Same(result), request), compute)
+        return Question((self.name, Same(exemplar), result.key, request), compute)
 
     def _request(self, shape: tuple[int, int], *, has_result: bool) -> PyramidRequest:
         settings = self.pyramid.settings

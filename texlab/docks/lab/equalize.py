@@ -169,7 +169,7 @@ class EqualizePage(LabPage):
         if name == "exemplar" and scene.exemplar is not None:
             pixels = scene.exemplar.pixels
         elif name == "result":
-            pixels = shown_image(column)
+            pixels = shown_image(column) if scene.stage is None else scene.stage.picture
         elif name.startswith("frame:") and column is not None:
             pixels = column.frames[int(name[6:])].picture
         return Source(name, pixels, self.band.currentData())

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, shown_image
+from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.code_numbers import (
     COLUMNS,
@@ -243,7 +243,7 @@ class CodeDock(FramedDock):
         given = given_code(column)
         self._key = "" if given is None else given.sha256
         self._exemplar_name = scene.exemplar.name
-        exemplar, image = scene.exemplar.pixels, shown_image(column)
+        exemplar, image = scene.exemplar.pixels, self.looked_at(scene)
         measure: BandwidthMeasure = getattr(column.params, "bandwidths", "participation")
         axes: BandwidthAxes = getattr(column.params, "bandwidth_axes", "uv")
         column_id, recent = column.id, self._recent
@@ -253,11 +253,12 @@ class CodeDock(FramedDock):
 
             measured = recent.get((Same(exemplar), measure, axes), lambda: encoded(exemplar, measure, axes))
             code = measured if given is None else code_from_json(given.data).code
-            reached = None if image is None else values(encoded(image, measure), "energy")
+            pixels = image.values()
+            reached = None if pixels is None else values(encoded(pixels, measure), "energy")
             name = "" if given is None else given.name
             return CodeAnswer(column_id, code, measured, "" if given is None else given.sha256, name, reached)
 
-        return Question((self.name, Same(exemplar), measure, axes, column_id, self._key, Same(image)), compute)
+        return Question((self.name, Same(exemplar), measure, axes, column_id, self._key, image.key), compute)
 
     # Showing.
 

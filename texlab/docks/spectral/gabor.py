@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QRectF, QSignalBlocker
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, shown_image
+from texlab.docks.frame import FramedDock, LookedAt
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.gabor_pictures import RESIDUAL, GaborAnswer, GaborRequest, Pair, gabor_pictures
 from texlab.docks.spectral.spectra import frequency_area
@@ -125,13 +125,13 @@ class GaborDock(FramedDock):
         request = GaborRequest(
             self.view.currentData(), self.channel.currentData(), self.part.currentData(), self._pair
         )
-        result = shown_image(scene.selected) if request.view != "local" else None
+        result = self.looked_at(scene) if request.view != "local" else LookedAt(None)
         recent = self._recent
 
         def compute(should_stop: Callable[[], bool]) -> GaborAnswer:
-            return gabor_pictures(exemplar, result, request, recent, should_stop)
+            return gabor_pictures(exemplar, result.values(), request, recent, should_stop)
 
-        return Question((self.name, Same(exemplar), Same(result), request), compute)
+        return Question((self.name, Same(exemplar), result.key, request), compute)
 
     def _view_changed(self) -> None:
         self._show_controls()

@@ -10,7 +10,7 @@ from PySide6.QtCore import QEvent, QRectF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, shown_image
+from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.peaks_table import PeaksTable, peak_rows
 from texlab.docks.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
@@ -155,15 +155,15 @@ class SpectrumDock(FramedDock):
         if scene.exemplar is None:
             return None
         exemplar, column = scene.exemplar.pixels, scene.selected
-        result = shown_image(column)
+        result = self.looked_at(scene)
         self._result_title = "result" if column is None else column.title
         view: View = self.view.currentData()
         recent = self._recent
 
         def compute(should_stop: Callable[[], bool]) -> SpectraAnswer:
-            return spectra(exemplar, result, view, recent, should_stop)
+            return spectra(exemplar, result.values(), view, recent, should_stop)
 
-        return Question((self.name, Same(exemplar), Same(result), view), compute)
+        return Question((self.name, Same(exemplar), result.key, view), compute)
 
     # Showing.
 
