@@ -55,7 +55,9 @@ class Bench:
         self.controller = Controller(self.session)
         self.dock = SweepsDock()
         self.host = DockHost(self.dock, Slots(1))
-        self.carrier = Carrier(self.controller, self.session.select, lambda source: None, lambda marks: None)
+        self.carrier = Carrier(
+            self.controller, self.session.select, lambda source: None, lambda marks: None, lambda dock, how: None
+        )
         self.dock.intention.connect(self.carrier.carry_out)
         self.controller.scene_changed.connect(self.host.show_scene)
         self.problems = []

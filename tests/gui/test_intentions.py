@@ -24,10 +24,13 @@ from texlab.state.intentions import (
     Point,
     RunSweep,
     ShowMarks,
+    ShowStage,
     StopSweep,
     TakeCell,
+    TakePicture,
     Tell,
 )
+from texlab.state.scene import Frame
 from texlab.state.session import Column, Session, State
 from texlab.state.sweeps import SweepPlan
 from texlab.window.carrier import Carrier
@@ -67,7 +70,13 @@ class Bench:
         self.chosen: list[int] = []
         self.opened: list[str] = []
         self.marks: list[Any] = []
-        self.carrier = Carrier(self.controller, self.chosen.append, self.opened.append, self.marks.append)
+        self.taken: list[tuple[str, str]] = []
+        self.carrier = Carrier(
+            self.controller, self.chosen.append, self.opened.append, self.marks.append, self.take
+        )
+
+    def take(self, dock: str, how: str) -> None:
+        self.taken.append((dock, how))
 
     def do(self, intention: Intention) -> list[tuple[Any, ...]]:
         self.carrier.carry_out(intention)
@@ -134,6 +143,15 @@ def test_pixels_and_marks(bench: Bench) -> None:
     marks: Any = ("here",)
     bench.do(ShowMarks(marks))
     assert bench.marks == [marks]
+
+
+def test_stages_and_pictures_of_tabs(bench: Bench) -> None:
+    frame = Frame("noise", np.zeros((4, 4, 3), np.uint8))
+    bench.do(ShowStage(1, frame))
+    bench.do(ShowStage(1, None))
+    bench.do(TakePicture("pyramid", "drag"))
+    assert bench.controller.orders == [("show_stage", 1, frame), ("show_stage", 1, None)]
+    assert bench.taken == [("pyramid", "drag")]
 
 
 def test_opening_telling_and_choosing(bench: Bench) -> None:

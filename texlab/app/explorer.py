@@ -30,6 +30,7 @@ from texlab.window.handlers import Handlers
 from texlab.window.help_desk import HelpDesk
 from texlab.window.opener import Opener
 from texlab.window.presenter import Presenter
+from texlab.window.tab_pictures import TabPictures
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import failures, methods
 from texlab_core.sheets.comparison import FIRST_SIGHT
@@ -80,11 +81,14 @@ class Explorer(QObject):
         self.hosts = [DockHost(dock, dock_slots, self) for dock in self.docks]
         self.exchange = Exchange(window, settings, self.controller, self.opener)
         self.desk = HelpDesk(window, self.session)
+        self.tabs = TabPictures(window, settings, self.controller)
         self.handlers = Handlers(window, self.workspace, self.controller, self.opener, self.exchange, self.desk)
         self.presenter = Presenter(
             window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
         )
-        self.carrier = Carrier(self.controller, self.handlers.select, self.opener.open, self.presenter.show_marks)
+        self.carrier = Carrier(
+            self.controller, self.handlers.select, self.opener.open, self.presenter.show_marks, self.tabs.take
+        )
         self._closed = False
         self._memory = QTimer(self)
         self._memory.setInterval(MEMORY_MS)
@@ -166,6 +170,7 @@ class Explorer(QObject):
         self.controller.close()
         self.crash.remove()
         self.desk.close()
+        self.tabs.close()
 
     @property
     def idle(self) -> bool:
@@ -199,12 +204,17 @@ class Explorer(QObject):
         controller.errands_changed.connect(window.show_errands)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
+        for how in ("copy", "save"):
+            window.actions_by_name[f"{how}-tab"].triggered.connect(partial(self._take_tab, how))
         presenter.recent_chosen.connect(self.opener.open)
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
         self.themes.changed.connect(lambda _: presenter.show_theme(self.themes.theme))
         self.workspace.column_made.connect(self._connect_column)
         for dock in self.docks:
             dock.intention.connect(self.carrier.carry_out)
+
+    def _take_tab(self, how: str, _: bool = False) -> None:
+        self.tabs.take_front(how)
 
     def _connect_controls(self) -> None:
         """Connect what the user turns and drags."""

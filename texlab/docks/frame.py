@@ -18,10 +18,11 @@ from PySide6.QtWidgets import (
 
 from texlab.docks.base import Dock
 from texlab.docks.recent import Same
-from texlab.state.intentions import ShowStage
+from texlab.state.intentions import ShowStage, TakePicture
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
+from texlab.widgets.picture_handle import PictureHandle
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import Readout
 
@@ -99,6 +100,9 @@ class FramedDock(Dock):
         self.controls = QWidget(self)
         self.controls.setObjectName(f"{self.name}-controls")
         self._line = FlowLayout(self.controls)
+        self.handle = PictureHandle()
+        self.handle.clicked.connect(lambda _: self.intention.emit(TakePicture(self.name, "copy")))
+        self.handle.dragged.connect(lambda: self.intention.emit(TakePicture(self.name, "drag")))
         self.stage_of = 0
         self.stage_button = QPushButton()
         self.stage_button.clicked.connect(lambda _: self.intention.emit(ShowStage(self.stage_of, None)))
@@ -123,6 +127,8 @@ class FramedDock(Dock):
         layout.addWidget(self.controls)
         layout.addWidget(pages, 1)
         self.build()
+        tip = "Drag what this tab shows into a slide; a click copies it; Ctrl+Shift+S saves it"
+        self.add_control(self.handle, "picture", "Picture of this tab", tip)
         self.paint_theme(self.theme)
 
     # For subclasses.

@@ -6,7 +6,7 @@ An intention says what is wanted and holds all that is needed for it; who carrie
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -131,6 +131,14 @@ class ShowStage:
 
 
 @dataclass(frozen=True)
+class TakePicture:
+    """Take what a dock shows away as a picture: put it on the clipboard, save it, or drag it elsewhere."""
+
+    dock: str
+    how: Literal["copy", "save", "drag"]
+
+
+@dataclass(frozen=True)
 class ShowMarks:
     """Outline these places in the exemplar, and no others."""
 
@@ -225,6 +233,7 @@ Intention = (
     | Point
     | Pin
     | ShowStage
+    | TakePicture
     | ShowMarks
     | Open
     | Tell

@@ -24,6 +24,7 @@ from texlab.state.intentions import (
     StopSweep,
     StopTuning,
     TakeCell,
+    TakePicture,
     Tell,
 )
 from texlab_core.engine.registry import find_method
@@ -49,6 +50,8 @@ class Carrier:
         Opens a path or a texture of the gallery.
     show_marks
         Outlines places in the exemplar.
+    take_picture
+        Takes what the dock of this name shows away as a picture: ``copy``, ``save`` or ``drag``.
     """
 
     def __init__(
@@ -57,12 +60,14 @@ class Carrier:
         choose: Callable[[int], None],
         open_source: Callable[[str], None],
         show_marks: Callable[[tuple[Mark, ...]], None],
+        take_picture: Callable[[str, str], None],
     ) -> None:
         self._controller = controller
         self._session = controller.session
         self._choose = choose
         self._open_source = open_source
         self._show_marks = show_marks
+        self._take_picture = take_picture
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -91,6 +96,8 @@ class Carrier:
                 controller.pin(column_id, row, place)
             case ShowStage(column_id, stage):
                 controller.show_stage(column_id, stage)
+            case TakePicture(dock, how):
+                self._take_picture(dock, how)
             case ShowMarks(marks):
                 self._show_marks(marks)
             case Open(source):
