@@ -154,7 +154,9 @@ class Bench:
         self.controller = Controller(self.session)
         self.dock = TuningDock()
         self.host = DockHost(self.dock, Slots(1))
-        self.carrier = Carrier(self.controller, self.session.select, lambda source: None, lambda marks: None)
+        self.carrier = Carrier(
+            self.controller, self.session.select, lambda source: None, lambda marks: None, lambda dock, how: None
+        )
         self.intended = []
         self.dock.intention.connect(self.intended.append)
         self.dock.intention.connect(self.carrier.carry_out)
