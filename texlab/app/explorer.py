@@ -21,6 +21,7 @@ from texlab.runs.slots import Slots
 from texlab.state.changes import as_a_whole, at_full_size
 from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
+from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.settings import columns_from_json, has_kept_inputs, seed_and_size
 from texlab.window.carrier import Carrier
@@ -83,6 +84,7 @@ class Explorer(QObject):
         self.desk = HelpDesk(window, self.session)
         self.tabs = TabPictures(window, settings, self.controller)
         self.handlers = Handlers(window, self.workspace, self.controller, self.opener, self.exchange, self.desk)
+        self.opener.layout_wanted = lambda layout: window.actions_by_name[f"layout-{layout}"].trigger()
         self.presenter = Presenter(
             window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
         )
@@ -140,6 +142,9 @@ class Explorer(QObject):
 
     def _open_first(self, source: str | None, saved: Any) -> None:
         choices = [*last_exemplar(saved), Choice(FIRST_TEXTURE, FIRST_CROP, 1.0)]
+        if source is not None and is_project(source):
+            self.opener.open_project(source, choices)
+            return
         if source is not None and is_document(source):
             # A code or a preset goes into a column; the exemplar is the last one.
             self.opener.open(source)

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from texlab.state.session import Column, State
+    from texlab.style.pictures import Picture
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
 
@@ -89,6 +90,11 @@ class ColumnRunner(QObject):
         self.worker.finished.connect(self._finished)
         self.worker.failed.connect(self._failed)
         self.worker.cancelled.connect(self._cancelled)
+
+    def show_stored(self, picture: Picture) -> None:
+        """Show the picture of an earlier result until there is another one."""
+        if self.scene.picture is None:
+            self._show(picture=picture)
 
     @property
     def running(self) -> bool:

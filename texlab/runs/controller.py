@@ -28,12 +28,13 @@ from texlab_core.engine.sizes import size_text
 from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab.state.scene import Frame
     from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
+    from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
 
@@ -199,6 +200,12 @@ class Controller(QObject):
             runner = self._runners.get(column_id)
             if runner is not None and runner.drafted:
                 self._start(column_id, alone=len(columns) == 1)
+
+    def show_stored(self, pictures: Mapping[int, Picture]) -> None:
+        """Show pictures of earlier results, by column id, until those of the present runs come."""
+        for column_id, picture in pictures.items():
+            if (runner := self._runners.get(column_id)) is not None:
+                runner.show_stored(picture)
 
     def point_at(self, column_id: int, row: int, column: int) -> None:
         """Ask about the pixel under the pointer, unless another one is pinned."""

@@ -127,6 +127,12 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
 
 
+def fresh_ids(state: State, first: int) -> State:
+    """Return a state whose columns have ids from ``first``: an id is never used again within a session."""
+    columns = tuple(dataclasses.replace(column, id=number) for number, column in enumerate(state.columns, first))
+    return dataclasses.replace(state, columns=columns, next_id=first + len(columns))
+
+
 def with_code(state: State, code: DataInput, chosen: int) -> tuple[State, int]:
     """Return the state in which MSG works from a code, and the id of its column.
 

@@ -10,6 +10,7 @@ from PySide6.QtCore import QMimeData, QStringListModel
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
+from texlab.storage.projects import SUFFIX as PROJECT
 from texlab.widgets.mime import brought_by
 from texlab.window.save_kinds import chosen_bits, named, save_kinds
 from texlab_core.engine.inputs import ImageInput
@@ -31,7 +32,7 @@ class Exchange:
 
     def __init__(self, window: MainWindow, settings: Settings, controller: Controller, opener: Opener) -> None:
         self._window = window
-        self._settings = settings
+        self.settings = self._settings = settings
         self._controller = controller
         self._opener = opener
         self._copies = 0
@@ -39,7 +40,7 @@ class Exchange:
     def ask_open(self) -> None:
         """Ask for images, codes or presets."""
         pattern = " ".join(f"*{suffix}" for suffix in READABLE_SUFFIXES)
-        kinds = f"Images ({pattern});;MSG codes and presets (*.json);;All files (*)"
+        kinds = f"Images ({pattern});;Projects (*{PROJECT});;MSG codes and presets (*.json);;All files (*)"
         folder = self._settings.text("open-folder")
         paths, _ = QFileDialog.getOpenFileNames(self._window, "Open images", folder, kinds)
         if paths:

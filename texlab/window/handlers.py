@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QMenu
 
 from texlab.widgets.plain import set_tip
 from texlab.window.batch_desk import BatchDesk
+from texlab.window.export_desk import ExportDesk
+from texlab.window.project_desk import ProjectDesk
 from texlab.window.toolbar import LAYOUTS
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.engine.params import describe
@@ -53,6 +55,8 @@ class Handlers(QObject):
         self._exchange = exchange
         self._desk = desk
         self.batches = BatchDesk(window, controller.session)
+        self.exports = ExportDesk(window, exchange.settings, controller)
+        self.projects = ProjectDesk(window, exchange.settings, controller)
         self._turned = ""
         self._turning = QTimer(self)
         self._turning.setSingleShot(True)
@@ -66,6 +70,7 @@ class Handlers(QObject):
         """Wait for nothing any more."""
         self._turning.stop()
         self.batches.close()
+        self.exports.close()
 
     def _by_column(self) -> dict[str, Callable[[int], Any]]:
         """Return what every command of ``COLUMN_COMMANDS`` does to a column."""
@@ -91,6 +96,9 @@ class Handlers(QObject):
             "open": exchange.ask_open,
             "paste": exchange.paste,
             "batch": self.batches.open,
+            "export-many": self.exports.open,
+            "save-project": self.projects.save,
+            "student-copy": partial(self.projects.save, for_student=True),
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,

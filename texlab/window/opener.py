@@ -6,8 +6,9 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from texlab.state.changes import Opened, fitting, restored, sample_of, with_code, with_crop_of
+from texlab.state.changes import Opened, fitting, fresh_ids, restored, sample_of, with_code, with_crop_of
 from texlab.state.session import Sample, Session
+from texlab.storage.projects import OpenedProject, is_project, open_project
 from texlab.storage.reading import Choice, Document, is_document, open_document, open_source
 from texlab.window.save_kinds import saved_words
 from texlab_core.engine.inputs import ImageInput
@@ -43,15 +44,16 @@ class Opener:
         self._settings = settings
         self._import_preset = import_preset
         self._show_several = show_several
+        self.layout_wanted: Callable[[str], None] = lambda _: None
         self._newest = 0
         self._read: tuple[ImageInput, Choice] | None = None
 
     def open_all(self, sources: Sequence[Source]) -> None:
         """Open what came together: every code and preset, and of several pictures the first that can be read."""
         for source in sources:
-            if is_document(source):
+            if is_document(source) or is_project(source):
                 self.open(source)
-        pictures = [source for source in sources if not is_document(source)]
+        pictures = [source for source in sources if not is_document(source) and not is_project(source)]
         if len(pictures) > 1:
             self._show_several(pictures)
             self._controller.said.emit(
@@ -62,7 +64,9 @@ class Opener:
 
     def open(self, source: Source) -> None:
         """Open a path, gallery:NAME, the bytes of a file or what was pasted; the newest of several images wins."""
-        if is_document(source):
+        if isinstance(source, str) and is_project(source):
+            self.open_project(source)
+        elif is_document(source):
             self._open_document(source)
         else:
             self.open_first_of([Choice(source)])
@@ -117,6 +121,34 @@ class Opener:
         self._session.apply(state, text)
         self._session.select(column_id)
         self._forget_start(first)
+
+    def open_project(self, path: str, otherwise: Sequence[Choice] = ()) -> None:
+        """Open a project file, or the first of these images when it cannot be read."""
+        # An image that is still being read comes too late.
+        self._newest += 1
+        number = self._newest
+
+        def done(opened: OpenedProject) -> None:
+            if number != self._newest:
+                return
+            first = self._session.state.sample is None
+            self._session.apply(fresh_ids(opened.state, self._session.state.next_id), f"project {Path(path).name}")
+            columns = self._session.state.columns
+            if columns:
+                self._session.select(columns[max(opened.selected - 1, 0)].id)
+            stored = {columns[place - 1].id: picture for place, picture in opened.pictures.items()}
+            self._controller.show_stored(stored)
+            self._forget_start(first)
+            self._settings.add_recent(path)
+            if opened.layout:
+                self.layout_wanted(opened.layout)
+            self._controller.said.emit(" ".join(opened.notes))
+
+        def failed() -> None:
+            if otherwise and number == self._newest:
+                self.open_first_of(otherwise)
+
+        self._controller.once("open-project", lambda task: open_project(path), done, failed)
 
     def _open_document(self, path: str) -> None:
         def work(task: Task) -> Document:

@@ -1,0 +1,131 @@
+"""Export in the window: names beforehand, the same core as the command line, progress and stopping."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pypdf
+import pytest
+from PIL import Image
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
+
+from tests.gui.conftest import ids, result_image
+from texlab.window.export_desk import column_items, foreseen
+from texlab.window.export_dialog import ExportDialog, ExportRequest
+from texlab_core.documents.record import read_recipe
+from texlab_core.errors import InputError
+from texlab_core.images.formats.reading import read_image
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def opened(explorer: Any) -> Any:
+    explorer.window.actions_by_name["export-many"].trigger()
+    return explorer.handlers.exports.dialog
+
+
+def press(qtbot: Any, dialog: ExportDialog) -> None:
+    qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dialog.folder_button.isEnabled())
+
+
+def test_the_chosen_column_is_written_with_seeds_and_sizes(
+    explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path
+) -> None:
+    assert opened.names.text() == "Say where to write to."
+    assert not opened.run_button.isEnabled()
+    opened.out.setText(str(tmp_path / "made"))
+    opened.seeds.setText("5..6")
+    opened.sizes.setText("48x48,24x20")
+    names = [f"waves-heeger-bergen-{size}-seed{seed}.png" for size in ("48x48", "24x20") for seed in (5, 6)]
+    assert opened.names.text().splitlines() == names
+    press(qtbot, opened)
+    assert sorted(path.name for path in (tmp_path / "made").iterdir()) == sorted(names)
+    assert opened.message.text() == f"Written: 4 files in {tmp_path / 'made'}."
+    chosen = explorer.session.selected_id
+    values = read_image(tmp_path / "made" / names[0], "a").values
+    np.testing.assert_array_equal(values, np.rint(result_image(explorer, chosen).astype(np.float64) * 255))
+    assert read_recipe(tmp_path / "made" / names[3]).size == (20, 24)
+    qtbot.mouseClick(opened.path_button, Qt.MouseButton.LeftButton)
+    assert QGuiApplication.clipboard().text().splitlines()[0] == str(tmp_path / "made" / names[0])
+
+
+def test_a_figure_of_all_columns(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    opened.kind.setCurrentIndex(1)
+    opened.out.setText(str(tmp_path / "a.txt"))
+    assert opened.names.text() == "The name of a figure ends in .pdf or .svg."
+    opened.out.setText(str(tmp_path / "a.pdf"))
+    for row in range(opened.columns.count()):
+        opened.columns.item(row).setCheckState(Qt.CheckState.Checked)
+    opened.width_cm.setText("8,5")
+    assert opened.names.text() == "a.pdf, 2 panels"
+    press(qtbot, opened)
+    page = pypdf.PdfReader(tmp_path / "a.pdf").pages[0]
+    assert float(page.mediabox.width) == pytest.approx(8.5 / 2.54 * 72, abs=1e-3)
+    assert "iterations 1" in page.extract_text()
+
+
+def test_an_animation(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    opened.kind.setCurrentIndex(2)
+    opened.out.setText(str(tmp_path / "a.webp"))
+    opened.motion.setEditText("iterations=1:4:4")
+    press(qtbot, opened)
+    with Image.open(tmp_path / "a.webp") as movie:
+        assert (movie.n_frames, movie.info["loop"]) == (4, 0)
+
+
+def test_what_fails_is_said_in_the_dialog(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    opened.out.setText(str(tmp_path / "none" / "made"))
+    qtbot.mouseClick(opened.run_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: "cannot be made" in opened.message.text())
+    assert opened.run_button.isEnabled()
+    assert not opened.folder_button.isEnabled()
+
+
+def test_it_can_be_stopped(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    opened.out.setText(str(tmp_path / "made"))
+    opened.seeds.setText("1..200")
+    qtbot.mouseClick(opened.run_button, Qt.MouseButton.LeftButton)
+    assert opened.stop_button.isEnabled()
+    qtbot.mouseClick(opened.stop_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: opened.message.text() == "Stopped; nothing was written.")
+    assert list(tmp_path.glob("made/*")) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"columns": ()}, "at least one column"),
+        ({"out": ""}, "Say where"),
+        ({"seeds": "4..1"}, "seeds"),
+        ({"sizes": "9"}, "sizes"),
+        ({"pattern": "{x}"}, "name"),
+        ({"pattern": "a", "seeds": "1,2"}, "add {seed}"),
+        ({"bits": "float"}, "8 or 16"),
+        ({"quality": 50}, "loses nothing"),
+        ({"kind": "figure", "out": "a.pdf", "width": "wide"}, "width"),
+        ({"kind": "figure", "out": "a.pdf", "width": "1"}, "width"),
+        ({"kind": "animation", "motion": "dance", "out": "a.gif"}, "animate"),
+        ({"kind": "animation", "out": "a.avi"}, ".mp4"),
+    ],
+)
+def test_what_cannot_be_is_said_beforehand(explorer: Any, changes: dict[str, Any], said: str) -> None:
+    asked = ExportRequest(
+        **({"kind": "files", "columns": tuple(ids(explorer)[:1]), "seeds": "", "sizes": "", "out": "x"} | changes)
+    )
+    with pytest.raises(InputError) as caught:
+        foreseen(asked, column_items(explorer.controller, asked.columns))
+    assert said in str(caught.value)
+
+
+def test_every_field_has_a_name_and_a_tip(qtbot: Any) -> None:
+    dialog = ExportDialog()
+    qtbot.addWidget(dialog)
+    for _, widget, *_ in dialog._rows():
+        assert widget.accessibleName()
+        assert widget.toolTip()
+        assert widget.objectName().startswith("export-")

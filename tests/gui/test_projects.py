@@ -1,0 +1,154 @@
+"""Project files in the window: saved, opened, a copy for a student; the session comes back."""
+
+from __future__ import annotations
+
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtWidgets import QFileDialog
+
+from tests.gui.conftest import hb, ids, result_image, wait_idle
+from texlab.state.session import Sample, State
+from texlab.storage.paths import config_dir
+from texlab.storage.projects import open_project, project_of
+from texlab_core.documents.preset_store import PresetStore
+from texlab_core.documents.presets import Preset
+from texlab_core.documents.project import read_project, save_project
+from texlab_core.engine.inputs import Crop
+from texlab_core.images.exemplar import as_exemplar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    import pytest
+
+    from texlab.app.explorer import Explorer
+
+
+def saved(qtbot: Any, explorer: Explorer, path: Path) -> Path:
+    explorer.handlers.projects.save_to(str(path))
+    qtbot.waitUntil(lambda: explorer.idle and path.exists())
+    return path
+
+
+def test_a_session_is_saved_and_opened_again(
+    qtbot: Any, explorer: Explorer, open_window: Callable[..., Explorer], tmp_path: Path
+) -> None:
+    explorer.session.select(ids(explorer)[1])
+    explorer.controller.edit_crop(Crop(2, 4, 30, 32), True)
+    wait_idle(qtbot, explorer)
+    images = [result_image(explorer, each) for each in ids(explorer)]
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    # Without the picture that it was made from.
+    (tmp_path / "waves.png").unlink()
+    other = open_window("gallery:stochastic-grass", [hb(iterations=3)])
+    before = ids(other)
+    other.opener.open(str(path))
+    qtbot.waitUntil(lambda: len(other.session.state.columns) == 2)
+    wait_idle(qtbot, other)
+    assert not set(ids(other)) & set(before)
+    assert other.session.selected_id == ids(other)[1]
+    assert other.session.state.sample.crop == Crop(2, 4, 30, 32)
+    for image, column_id in zip(images, ids(other), strict=True):
+        np.testing.assert_array_equal(result_image(other, column_id), image)
+    other.session.undo()
+    assert ids(other) == before
+    assert str(path) in other.settings.recent
+
+
+def test_a_window_starts_with_a_project_or_says_why_not(
+    qtbot: Any, explorer: Explorer, open_window: Callable[..., Explorer], tmp_path: Path
+) -> None:
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    started = open_window(str(path), [hb()])
+    assert len(started.session.state.columns) == 2
+    path.write_bytes(b"PK")
+    broken = open_window(str(path), [hb()])
+    assert broken.session.state.sample is not None
+    assert "a.texlab" in broken.window.message_bar.label.text()
+
+
+def test_the_pictures_of_a_project_are_there_before_its_columns_run(
+    qtbot: Any, explorer: Explorer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    opened = open_project(str(path))
+    assert set(opened.pictures) == {1, 2}
+    for number, column_id in enumerate(ids(explorer), 1):
+        wanted = np.rint(result_image(explorer, column_id).astype(np.float64) * 255)
+        np.testing.assert_array_equal(opened.pictures[number], wanted)
+    seen: list[Any] = []
+    show = explorer.controller.show_stored
+
+    def spy(pictures: Any) -> None:
+        show(pictures)
+        seen.extend(explorer.controller.column_scene(column_id) for column_id in pictures)
+
+    monkeypatch.setattr(explorer.controller, "show_stored", spy)
+    explorer.opener.open(str(path))
+    qtbot.waitUntil(lambda: bool(seen))
+    for number, scene in enumerate(seen, 1):
+        assert scene.status != "finished"
+        np.testing.assert_array_equal(scene.picture, opened.pictures[number])
+    wait_idle(qtbot, explorer)
+
+
+def test_the_menus_ask_for_a_name(
+    qtbot: Any, explorer: Explorer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = [
+        (str(tmp_path / "one"), ""),
+        (str(tmp_path / "two.texlab"), ""),
+        ("", ""),
+        (str(tmp_path / "one"), ""),
+    ]
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: answers.pop(0))
+    for action, name in (("save-project", "one.texlab"), ("student-copy", "two.texlab")):
+        explorer.window.actions_by_name[action].trigger()
+        qtbot.waitUntil((tmp_path / name).exists)
+    qtbot.waitUntil(lambda: explorer.idle)
+    explorer.window.actions_by_name["save-project"].trigger()
+    explorer.window.actions_by_name["save-project"].trigger()
+    assert "one.texlab is already there" in explorer.window.message_bar.label.text()
+    assert answers == []
+
+
+def test_a_copy_for_a_student_tells_nothing_of_this_computer(tmp_path: Path) -> None:
+    pixels = np.random.default_rng(0).random((16, 16, 3)).astype(np.float32)
+    image = as_exemplar(pixels, name="/home/someone/secret/wall.png")
+    state = State(Sample(image, path="/home/someone/secret/wall.png"), (), 1, (16, 16), 1)
+    path = tmp_path / "a.texlab"
+    save_project(path, project_of(state, 0, {}, "", for_student=True))
+    with zipfile.ZipFile(path) as archive:
+        text = b"".join(archive.read(name) for name in archive.namelist())
+    assert b"someone" not in text
+    assert read_project(path).exemplar.name == "wall.png"  # type: ignore[union-attr]
+
+
+def test_presets_of_the_methods_come_along(qtbot: Any, explorer: Explorer, tmp_path: Path) -> None:
+    store = PresetStore(config_dir() / "presets")
+    mine = Preset(name="soft", method="heeger-bergen", parameters={"iterations": 2})
+    store.save(mine)
+    store.save(Preset(name="other", method="msg"))
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    assert read_project(path).presets == (mine,)
+    store.delete("soft", "heeger-bergen")
+    assert "New presets: soft." in open_project(str(path)).notes
+    assert mine in store.presets()
+    assert len(open_project(str(path)).notes) == 1
+
+
+def test_a_deep_source_of_a_restored_result_is_kept(tmp_path: Path) -> None:
+    deep = np.random.default_rng(1).integers(0, 65536, (20, 24, 3), np.uint16)
+    from texlab.state.changes import sample_as_used
+
+    sample = sample_as_used(as_exemplar(deep, name="deep.tif", crop=Crop(1, 1, 16, 16)))
+    path = tmp_path / "a.texlab"
+    save_project(path, project_of(State(sample, (), 1, (16, 16), 1), 0, {}, "tune"))
+    opened = open_project(str(path))
+    assert opened.state.sample is not None
+    np.testing.assert_array_equal(opened.state.sample.source.pixels, sample.source.pixels)
+    assert (opened.state.sample.crop, opened.state.sample.source.depth) == (Crop(1, 1, 16, 16), 16)
+    assert opened.layout == "tune"

@@ -1,0 +1,164 @@
+"""Project files of the window: its session with pictures, and back."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from texlab.state.session import Column, Sample, State
+from texlab.storage.paths import config_dir
+from texlab_core.documents.preset_store import PresetStore
+from texlab_core.documents.presets import PresetError
+from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn, read_project
+from texlab_core.engine.registry import find_method
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from texlab.style.pictures import Picture
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.steps import FloatImage
+
+__all__ = ["SUFFIX", "OpenedProject", "is_project", "open_project", "project_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedProject:
+    """What a project file turned out to be.
+
+    Parameters
+    ----------
+    state
+        The session in which its columns run; ids count from 1.
+    selected
+        Id of the chosen column.
+    pictures
+        Of finished results, by id, (H, W, 3) uint8.
+    layout
+        "explore", "teach", "tune" or "".
+    notes
+        What there is to say about it, one sentence each.
+    """
+
+    state: State
+    selected: int
+    pictures: Mapping[int, Picture]
+    layout: str
+    notes: tuple[str, ...] = ()
+
+
+def is_project(source: object) -> bool:
+    """Return whether a source is a project file, by its name."""
+    return isinstance(source, str) and source.lower().endswith(SUFFIX)
+
+
+def project_of(
+    state: State, selected: int, images: Mapping[int, FloatImage], layout: str, *, for_student: bool = False
+) -> Project:
+    """Return the session as a project; runs in a thread.
+
+    Parameters
+    ----------
+    state, selected
+        The session.
+    images
+        Finished results by column id, (H, W, C) float32.
+    layout
+        Name of the layout.
+    for_student
+        Names of files lose their folders, so that nothing tells of this computer.
+    """
+    from texlab_core.images.formats.writing import encode_image
+
+    places = [column.id for column in state.columns]
+    sample = state.sample
+    store = PresetStore(config_dir() / "presets")
+    used = dict.fromkeys(column.method for column in state.columns)
+    columns = tuple(
+        ProjectColumn(
+            method=column.method,
+            params=column.params,
+            inputs=dict(column.inputs),
+            size=column.size,
+            result=encode_image("a.png", images[column.id]) if column.id in images else b"",
+        )
+        for column in state.columns
+    )
+    project = Project(
+        exemplar=None if sample is None else _source(sample),
+        columns=columns,
+        scale=1.0 if sample is None else sample.scale,
+        crop=None if sample is None else sample.crop,
+        seed=state.seed,
+        size=state.size,
+        chosen=places.index(selected) if selected in places else 0,
+        presets=tuple(each for method in used for each in store.presets(method))[:MAX_PRESETS],
+        layout=layout,
+    )
+    return _without_folders(project) if for_student else project
+
+
+def _source(sample: Sample) -> ImageInput:
+    """Return the source of a sample under a hash of its own pixels."""
+    from texlab_core.images.exemplar import take
+
+    source = sample.source
+    origin = source.origin
+    return take(
+        source.pixels,
+        source.name,
+        notes=source.notes,
+        depth=source.depth,
+        alpha=source.alpha,
+        taken=None if origin is None else origin.taken,
+    )
+
+
+def _without_folders(project: Project) -> Project:
+    exemplar = project.exemplar
+    if exemplar is not None and not exemplar.name.startswith("gallery:"):
+        name = exemplar.name.replace("\\", "/").rpartition("/")[2]
+        exemplar = dataclasses.replace(exemplar, name=name or "exemplar")
+    return dataclasses.replace(project, exemplar=exemplar)
+
+
+def open_project(path: str) -> OpenedProject:
+    """Read a project file, and keep those of its presets that are not there yet; runs in a thread.
+
+    Raises
+    ------
+    InputError
+        One sentence when it is none, or damaged.
+    """
+    from texlab_core.images.formats.reading import read_image
+
+    project = read_project(path)
+    sample = None if project.exemplar is None else Sample(project.exemplar, project.scale, project.crop)
+    columns, pictures = [], {}
+    for number, each in enumerate(project.columns, 1):
+        columns.append(Column(number, each.method, each.params, tuple(each.inputs.items()), each.size))
+        if each.result:
+            values = read_image(each.result, f"the result of column {number}").values[..., :3]
+            pictures[number] = values.repeat(3, axis=2) if values.shape[2] == 1 else values
+    size = project.size
+    state = State(sample, tuple(columns), project.seed, size, len(columns) + 1)
+    names = ", ".join(dict.fromkeys(find_method(each.method).title for each in project.columns))
+    said = [f"Opened {path}: {len(columns)} columns ({names})."]
+    if kept := _keep_presets(project):
+        said.append(f"New presets: {', '.join(kept)}.")
+    return OpenedProject(state, project.chosen + 1 if columns else 0, pictures, project.layout, tuple(said))
+
+
+def _keep_presets(project: Project) -> list[str]:
+    store = PresetStore(config_dir() / "presets")
+    there = {preset.key for preset in store.presets()}
+    kept = []
+    for preset in project.presets:
+        if preset.key not in there:
+            try:
+                store.save(preset, replace=False)
+            except PresetError:
+                continue
+            kept.append(preset.name)
+    return kept

@@ -1,0 +1,243 @@
+"""Exports from the window: one at a time, in a thread, over the same core as the command line."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QDesktopServices, QGuiApplication
+
+from texlab.runs.column_runner import job_of
+from texlab.runs.worker import Worker
+from texlab.window.export_dialog import ExportDialog, ExportRequest
+from texlab_core.engine.registry import find_method
+from texlab_core.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from texlab.runs.controller import Controller
+    from texlab.runs.worker import Task
+    from texlab.storage.settings import Settings
+    from texlab.window.main_window import MainWindow
+    from texlab_core.images.formats.writing import Bits
+    from texlab_core.sheets.export import Export, Item
+    from texlab_core.sheets.figure import Figure
+
+PATIENCE_S = 30.0
+_BITS: dict[str, Bits | None] = {"": None, "8": 8, "16": 16, "float": "float"}
+
+
+class ExportDesk:
+    """Opens the dialog (made when it is first wanted), and carries out what it asks for."""
+
+    def __init__(self, window: MainWindow, settings: Settings, controller: Controller) -> None:
+        self._window = window
+        self._settings = settings
+        self._controller = controller
+        self.dialog: ExportDialog | None = None
+        self._worker: Worker | None = None
+        self.written: tuple[Path, ...] = ()
+
+    @property
+    def busy(self) -> bool:
+        """Whether an export runs."""
+        return self._worker is not None and self._worker.busy
+
+    def open(self) -> None:
+        """Show the dialog with the columns that there are now."""
+        if self.dialog is None:
+            self.dialog = ExportDialog(self._window)
+            self.dialog.out.setText(self._settings.text("save-folder"))
+            self.dialog.asked.connect(self._run)
+            self.dialog.edited.connect(self._foresee)
+            self.dialog.stopped.connect(self._stop)
+            self.dialog.folder_wanted.connect(self._show_folder)
+            self.dialog.path_wanted.connect(self._copy_path)
+        state = self._controller.session.state
+        columns = [
+            (each.id, f"{place}. {find_method(each.method).title}") for place, each in enumerate(state.columns, 1)
+        ]
+        self.dialog.set_columns(columns, self._controller.session.selected_id)
+        self.dialog.show()
+        self.dialog.raise_()
+
+    def close(self) -> None:
+        """Stop what runs, and wait for its end."""
+        if self._worker is not None:
+            self._worker.close(PATIENCE_S)
+            self._worker = None
+        if self.dialog is not None:
+            self.dialog.close()
+
+    def _foresee(self, asked: ExportRequest) -> None:
+        """Show the names that a request would give, or why it cannot be carried out."""
+        assert self.dialog is not None
+        try:
+            self.dialog.show_names(foreseen(asked, self._items(asked)))
+        except InputError as error:
+            self.dialog.show_problem(str(error))
+
+    def _items(self, asked: ExportRequest) -> list[Item]:
+        wanted = (self._controller.session.selected_id,) if asked.kind == "animation" else asked.columns
+        return column_items(self._controller, wanted)
+
+    def _run(self, asked: ExportRequest) -> None:
+        dialog = self.dialog
+        assert dialog is not None
+        if self._worker is None:
+            self._worker = Worker("export", parent=self._window)
+            self._worker.progressed.connect(dialog.show_progress)
+            self._worker.finished.connect(self._done)
+            self._worker.failed.connect(dialog.show_idle)
+            self._worker.cancelled.connect(partial(dialog.show_idle, "Stopped; nothing was written."))
+        try:
+            items = self._items(asked)
+        except InputError as error:
+            dialog.show_problem(str(error))
+            return
+        folder = asked.out if asked.kind == "files" else str(Path(asked.out).parent)
+        self._settings.values["save-folder"] = folder
+        dialog.show_running()
+        self._worker.submit(lambda task: carry_out(asked, items, task))
+
+    def _done(self, written: tuple[Path, ...]) -> None:
+        assert self.dialog is not None
+        self.written = written
+        self.dialog.show_progress(1.0)
+        what = str(written[0]) if len(written) == 1 else f"{len(written)} files in {written[0].parent}"
+        self.dialog.show_idle(f"Written: {what}.", written=True)
+
+    def _stop(self) -> None:
+        if self._worker is not None:
+            self._worker.cancel()
+
+    def _show_folder(self) -> None:
+        if self.written:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.written[0].parent.absolute())))
+
+    def _copy_path(self) -> None:
+        QGuiApplication.clipboard().setText("\n".join(str(path.absolute()) for path in self.written))
+
+
+def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item]:
+    """Return columns as what can be exported, with the results that they have.
+
+    Raises
+    ------
+    InputError
+        When none is chosen, the exemplar is still being read, or a column's job cannot work.
+    """
+    from texlab_core.sheets.export import Item
+
+    state, exemplar = controller.session.state, controller.exemplar
+    columns = [column for column in state.columns if column.id in column_ids]
+    if not columns:
+        raise InputError("Choose at least one column.")
+    if exemplar is None:
+        raise InputError("The exemplar is still being read.")
+    items = []
+    for column in columns:
+        job = job_of(column, exemplar, state.size_of(column), state.seed, None)
+        scene = controller.column_scene(column.id)
+        result = None if scene is None else scene.result
+        # While a control is dragged, the result is of what was there before.
+        same = result is not None and result.job.key == job.key
+        # Depth and transparency are those of today's exemplar.
+        items.append(Item(job, result=dataclasses.replace(result, job=job) if same else None))
+    return items
+
+
+def _selected(asked: ExportRequest, items: Sequence[Item]) -> tuple[Item, ...]:
+    from texlab_core.sheets.export import selection
+    from texlab_core.sheets.export_names import parse_seeds, parse_sizes
+
+    dimensions = {len(item.job.size) for item in items}
+    if len(dimensions) > 1:
+        raise InputError("Pictures and solids are exported one kind at a time.")
+    sizes = parse_sizes(asked.sizes, dimensions.pop()) if asked.sizes else ()
+    return selection(items, parse_seeds(asked.seeds) if asked.seeds else (), sizes)
+
+
+def _export(asked: ExportRequest) -> Export:
+    from texlab_core.sheets.export import Export
+
+    quality = asked.quality or None
+    recipe = asked.recipe
+    return Export(Path(asked.out), asked.pattern, asked.suffix, _BITS[asked.bits], quality, recipe)  # type: ignore[arg-type]
+
+
+def foreseen(asked: ExportRequest, items: Sequence[Item]) -> list[str]:
+    """Return the names that a request would give; nothing is read or written.
+
+    Raises
+    ------
+    InputError
+        When it cannot be carried out.
+    """
+    from texlab_core.images.formats.movies import check_movie
+    from texlab_core.sheets.export_animation import animation_of
+    from texlab_core.sheets.export_names import file_stems
+    from texlab_core.sheets.figure import is_figure
+
+    if not asked.out:
+        raise InputError("Say where to write to.")
+    if asked.kind == "animation":
+        animation_of(asked.motion, items[0].job, frames=asked.frames, rate=float(asked.rate))
+        if Path(asked.out).suffix:
+            check_movie(asked.out, float(asked.rate))
+        return [Path(asked.out).name or asked.out]
+    selected = _selected(asked, items)
+    if asked.kind == "files":
+        export = _export(asked)
+        return [f"{stem}{export.suffix}" for stem in file_stems(asked.pattern, [each.named for each in selected])]
+    _look(asked)
+    if not is_figure(asked.out):
+        raise InputError("The name of a figure ends in .pdf or .svg.")
+    return [f"{Path(asked.out).name}, {len(selected)} panels"]
+
+
+def _look(asked: ExportRequest) -> Figure:
+    from texlab_core.errors import ParamError
+    from texlab_core.sheets.figure import Figure
+
+    try:
+        width = float(asked.width.replace(",", "."))
+    except ValueError:
+        raise ParamError("width", "a number of cm from 2 to 100", asked.width) from None
+    return Figure(width=width, dpi=float(asked.dpi), columns=asked.across or None)
+
+
+def carry_out(asked: ExportRequest, items: Sequence[Item], task: Task) -> tuple[Path, ...]:
+    """Carry a request out in a worker's thread and return what was written; raises as the core does."""
+    from texlab_core.files.whole import check_target, write_whole
+    from texlab_core.sheets.export import export_tiles, run_export, run_items
+    from texlab_core.sheets.export_animation import (
+        animation_of,
+        check_animation_target,
+        draw_frames,
+        write_animation,
+    )
+    from texlab_core.sheets.figure import encode_figure, figure_page
+
+    def tell(share: float) -> None:
+        if task.due():
+            task.progress(share)
+
+    stop = task.should_stop
+    if asked.kind == "files":
+        return run_export(_export(asked), _selected(asked, items), on_progress=tell, should_stop=stop)
+    if asked.kind == "figure":
+        out = check_target(asked.out)
+        selected = _selected(asked, items)
+        results = run_items(selected, on_progress=tell, should_stop=stop)
+        page = figure_page(export_tiles(zip(selected, results, strict=True)), _look(asked))
+        write_whole(out, encode_figure(out, page))
+        return (out,)
+    animation = animation_of(asked.motion, items[0].job, frames=asked.frames, rate=float(asked.rate))
+    check_animation_target(asked.out, animation)
+    drawn, result = draw_frames(items[0].job, animation, on_progress=tell, should_stop=stop)
+    return write_animation(asked.out, drawn, result, rate=animation.rate, should_stop=stop)

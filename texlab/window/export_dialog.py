@@ -1,0 +1,342 @@
+"""Export: which columns, seeds and sizes, as files, a figure or an animation, and how far it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLineEdit,
+    QListWidget,
+    QListWidgetItem,
+    QProgressBar,
+    QPushButton,
+    QWidget,
+)
+
+from texlab.widgets.number_box import WholeBox
+from texlab.widgets.plain import Label, set_tip
+from texlab_core.sheets.export_names import FIELDS, PATTERN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+Kind = Literal["files", "figure", "animation"]
+KINDS: tuple[tuple[Kind, str], ...] = (
+    ("files", "files, one for each result"),
+    ("figure", "a figure for print, PDF or SVG"),
+    ("animation", "an animation of the chosen column"),
+)
+FORMATS = {
+    "PNG": ".png",
+    "TIFF": ".tif",
+    "WebP": ".webp",
+    "JPEG": ".jpg",
+    "AVIF": ".avif",
+    "JPEG XL": ".jxl",
+}
+BITS = {"as the exemplar": "", "8 bits": "8", "16 bits": "16", "floats": "float"}
+RECIPES = {"inside, where the format holds it": "inside", "beside each file": "beside", "nowhere": "none"}
+_STEPS = 1000
+_SHOWN = 4
+
+
+@dataclass(frozen=True)
+class ExportRequest:
+    """What the user wants to export.
+
+    Parameters
+    ----------
+    kind
+        Files, a figure or an animation.
+    columns
+        Ids of columns.
+    seeds, sizes
+        As on the command line; "" for each column's own.
+    out
+        A folder for files, a file for a figure, either for an animation.
+    suffix, bits, quality, pattern, recipe
+        Of files; the quality is 0 for none.
+    width, dpi, across
+        Of a figure: cm, pixels per inch, pictures in a row (0: its own).
+    motion, frames, rate
+        Of an animation.
+    """
+
+    kind: Kind
+    columns: tuple[int, ...]
+    seeds: str
+    sizes: str
+    out: str
+    suffix: str = ".png"
+    bits: str = ""
+    quality: int = 0
+    pattern: str = PATTERN
+    recipe: str = "inside"
+    width: str = "17"
+    dpi: int = 300
+    across: int = 0
+    motion: str = "growth"
+    frames: int = 60
+    rate: int = 12
+
+
+class ExportDialog(QDialog):
+    """Asks what to export, shows the names beforehand, then how far it is.
+
+    ``asked(ExportRequest)`` to begin, ``edited(ExportRequest)`` when a field changes, ``stopped()`` to stop,
+    ``folder_wanted()`` and ``path_wanted()`` for what was written.
+    """
+
+    asked = Signal(object)
+    edited = Signal(object)
+    stopped = Signal()
+    folder_wanted = Signal()
+    path_wanted = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("export-dialog")
+        self.setWindowTitle("Export")
+        self._running = False
+        self._written = False
+        self._sound = False
+        self.kind = _box([text for _, text in KINDS])
+        self.columns = QListWidget()
+        self.columns.setFixedHeight(6 * self.fontMetrics().lineSpacing())
+        self.seeds, self.sizes, self.out = QLineEdit(), QLineEdit(), QLineEdit()
+        self.seeds.setPlaceholderText("the window's; or 1..4,9")
+        self.sizes.setPlaceholderText("each column's own; or 512x512,1024x1024")
+        self.format, self.bits, self.recipe = _box(FORMATS), _box(BITS), _box(RECIPES)
+        self.quality = _number(0, 100, 0, "without loss")
+        self.pattern = QLineEdit(PATTERN)
+        self.width_cm = QLineEdit("17")
+        self.dpi = _number(36, 2400, 300)
+        self.across = _number(0, 64, 0, "its own")
+        self.motion = QComboBox()
+        self.motion.setEditable(True)
+        self.motion.addItems(["growth", "iterations", "seed=1:12:12"])
+        self.frames, self.rate = _number(2, 720, 60), _number(1, 50, 12)
+        self.names = Label("")
+        self.names.setWordWrap(True)
+        self.names.setMinimumHeight((_SHOWN + 1) * self.fontMetrics().lineSpacing())
+        self.names.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.bar = QProgressBar()
+        self.bar.setRange(0, _STEPS)
+        self.message = Label("")
+        self.message.setWordWrap(True)
+        self.message.setMinimumSize(460, 2 * self.fontMetrics().lineSpacing())
+        self._form = QFormLayout(self)
+        self._lay_out()
+        self._connect()
+        self.show_idle("")
+
+    def _rows(self) -> tuple[tuple[str, QWidget, str, str, tuple[Kind, ...]], ...]:
+        fields = f"Text with {', '.join(f'{{{each}}}' for each in FIELDS)}"
+        every: tuple[Kind, ...] = ("files", "figure", "animation")
+        return (
+            ("What", self.kind, "kind", "What is written", every),
+            ("Columns", self.columns, "columns", "Whose results are written", ("files", "figure")),
+            ("Seeds", self.seeds, "seeds", "Seeds as in 1..4,9", ("files", "figure")),
+            ("Sizes", self.sizes, "sizes", "Sizes as in 512x512,1024x1024", ("files", "figure")),
+            ("Format", self.format, "format", "The format of the files", ("files",)),
+            ("Depth", self.bits, "bits", "Bits for each sample", ("files",)),
+            ("Quality", self.quality, "quality", "1 to 100 for smaller files that lose something", ("files",)),
+            (
+                "Names",
+                self.pattern,
+                "pattern",
+                fields,
+                ("files",),
+            ),
+            ("Recipes", self.recipe, "recipe", "Where it is kept how each file was made", ("files",)),
+            ("Width in cm", self.width_cm, "width", "Of the page, that of its column in print", ("figure",)),
+            ("Resolution", self.dpi, "dpi", "Finer pictures are reduced to so many pixels per inch", ("figure",)),
+            ("In a row", self.across, "across", "Pictures side by side", ("figure",)),
+            (
+                "Shows",
+                self.motion,
+                "motion",
+                "growth, iterations, or a knob: alpha=0.05:0.3:24",
+                ("animation",),
+            ),
+            ("Frames", self.frames, "frames", "Of a growth", ("animation",)),
+            ("Frames a second", self.rate, "rate", "How fast it goes", ("animation",)),
+        )
+
+    def _lay_out(self) -> None:
+        form = self._form
+        for label, widget, name, tip, _ in self._rows():
+            widget.setObjectName(f"export-{name}")
+            widget.setAccessibleName(label)
+            set_tip(widget, tip)
+            form.addRow(label, widget)
+        self.out.setObjectName("export-out")
+        self.out.setAccessibleName("Write to")
+        set_tip(self.out, "A folder, or a name that ends in .pdf, .svg, .webp, .gif, .apng or .mp4")
+        choose = QPushButton("Choose ...")
+        choose.setObjectName("export-out-choose")
+        choose.setAutoDefault(False)
+        choose.clicked.connect(self._ask_out)
+        line = QHBoxLayout()
+        line.addWidget(self.out, 1)
+        line.addWidget(choose)
+        form.addRow("Write to", line)
+        self.names.setObjectName("export-names")
+        self.bar.setObjectName("export-bar")
+        self.bar.setAccessibleName("Progress")
+        self.message.setObjectName("export-message")
+        form.addRow("Will be", self.names)
+        form.addRow(self.bar)
+        form.addRow(self.message)
+        buttons = QDialogButtonBox()
+        self.run_button = _button(buttons, "Export", "export-run", lambda: self.asked.emit(self.request()))
+        self.stop_button = _button(buttons, "Stop", "export-stop", self.stopped.emit)
+        self.folder_button = _button(buttons, "Show in folder", "export-folder", self.folder_wanted.emit)
+        self.path_button = _button(buttons, "Copy path", "export-path", self.path_wanted.emit)
+        self.close_button = _button(buttons, "Close", "export-close", self.close)
+        form.addRow(buttons)
+
+    def _connect(self) -> None:
+        self.kind.currentIndexChanged.connect(self._show_rows)
+        for box in (self.kind, self.format, self.bits, self.recipe):
+            box.currentIndexChanged.connect(self._edited)
+        for line in (self.seeds, self.sizes, self.out, self.pattern, self.width_cm):
+            line.textChanged.connect(self._edited)
+        for number in (self.quality, self.dpi, self.across, self.frames, self.rate):
+            number.valueChanged.connect(self._edited)
+        self.motion.editTextChanged.connect(self._edited)
+        self.columns.itemChanged.connect(self._edited)
+        self._show_rows()
+
+    def _show_rows(self) -> None:
+        kind = self._kind()
+        for _, widget, _, _, kinds in self._rows():
+            self._form.setRowVisible(widget, kind in kinds)
+
+    def _kind(self) -> Kind:
+        return KINDS[self.kind.currentIndex()][0]
+
+    def set_columns(self, columns: Sequence[tuple[int, str]], chosen: int) -> None:
+        """Offer columns by id and title; the chosen one is ticked."""
+        self.columns.blockSignals(True)
+        self.columns.clear()
+        for column_id, title in columns:
+            item = QListWidgetItem(title, self.columns)
+            item.setData(Qt.ItemDataRole.UserRole, column_id)
+            item.setFlags(
+                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsUserCheckable | Qt.ItemFlag.ItemIsSelectable
+            )
+            ticked = Qt.CheckState.Checked if column_id == chosen else Qt.CheckState.Unchecked
+            item.setCheckState(ticked)
+        self.columns.blockSignals(False)
+        self._edited()
+
+    def request(self) -> ExportRequest:
+        """Return what the fields say."""
+        items = [self.columns.item(row) for row in range(self.columns.count())]
+        ticked = tuple(
+            int(item.data(Qt.ItemDataRole.UserRole))
+            for item in items
+            if item.checkState() == Qt.CheckState.Checked
+        )
+        return ExportRequest(
+            kind=self._kind(),
+            columns=ticked,
+            seeds=self.seeds.text().strip(),
+            sizes=self.sizes.text().strip(),
+            out=self.out.text().strip(),
+            suffix=FORMATS[self.format.currentText()],
+            bits=BITS[self.bits.currentText()],
+            quality=self.quality.value(),
+            pattern=self.pattern.text(),
+            recipe=RECIPES[self.recipe.currentText()],
+            width=self.width_cm.text().strip(),
+            dpi=self.dpi.value(),
+            across=self.across.value(),
+            motion=self.motion.currentText().strip(),
+            frames=self.frames.value(),
+            rate=self.rate.value(),
+        )
+
+    def _edited(self) -> None:
+        self.edited.emit(self.request())
+
+    def show_names(self, names: Sequence[str]) -> None:
+        """Show what the files will be called."""
+        rest = f"\n... and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+        self.names.setText("\n".join(names[:_SHOWN]) + rest)
+        self._sound = True
+        self._check()
+
+    def show_problem(self, sentence: str) -> None:
+        """Show why it cannot be exported like this."""
+        self.names.setText(sentence)
+        self._sound = False
+        self._check()
+
+    def show_idle(self, sentence: str, *, written: bool = False) -> None:
+        """Show that nothing runs, and why not, or what came of it."""
+        self._running = False
+        self._written = self._written or written
+        self.message.setText(sentence)
+        self._check()
+
+    def show_running(self) -> None:
+        """Show that it has begun."""
+        self._running, self._written = True, False
+        self.bar.setValue(0)
+        self.message.setText("Making the results ...")
+        self._check()
+
+    def show_progress(self, share: float) -> None:
+        """Show how far it is, 0 to 1."""
+        self.bar.setValue(int(share * _STEPS))
+
+    def _check(self) -> None:
+        self.run_button.setEnabled(self._sound and not self._running)
+        self.stop_button.setEnabled(self._running)
+        self.folder_button.setEnabled(self._written)
+        self.path_button.setEnabled(self._written)
+
+    def _ask_out(self) -> None:
+        kind = self._kind()
+        if kind == "files":
+            path = QFileDialog.getExistingDirectory(self, "Folder for the files", self.out.text())
+        else:
+            kinds = {
+                "figure": "PDF (*.pdf);;SVG (*.svg)",
+                "animation": "WebP (*.webp);;GIF (*.gif);;APNG (*.apng);;MP4 (*.mp4)",
+            }[kind]
+            path, _ = QFileDialog.getSaveFileName(self, "Export", self.out.text(), kinds)
+        if path:
+            self.out.setText(path)
+
+
+def _box(texts: object) -> QComboBox:
+    box = QComboBox()
+    box.addItems([str(text) for text in texts])  # type: ignore[attr-defined]
+    return box
+
+
+def _number(low: int, high: int, value: int, none: str = "") -> WholeBox:
+    box = WholeBox()
+    box.setRange(low, high)
+    box.setValue(value)
+    box.setSpecialValueText(none)
+    return box
+
+
+def _button(box: QDialogButtonBox, text: str, name: str, call: Callable[[], object]) -> QPushButton:
+    button = box.addButton(text, QDialogButtonBox.ButtonRole.ActionRole)
+    button.setObjectName(name)
+    button.setAutoDefault(False)
+    button.clicked.connect(lambda _=False: call())
+    return button
