@@ -81,6 +81,7 @@ class Explorer(QObject):
         self.docks: list[Dock] = [make() for make in dock_classes()]
         self.hosts = [DockHost(dock, dock_slots, self) for dock in self.docks]
         self.exchange = Exchange(window, settings, self.controller, self.opener)
+        self.opener.locate_wanted = self.exchange.ask_locate
         self.desk = HelpDesk(window, self.session)
         self.tabs = TabPictures(window, settings, self.controller)
         self.handlers = Handlers(window, self.workspace, self.controller, self.opener, self.exchange, self.desk)

@@ -15,11 +15,12 @@ from texlab.widgets.pasted import Pasted, pixels_of
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
     from texlab_core.documents.presets import Preset
+    from texlab_core.documents.recipe import RecipeInput
 
 DOCUMENT_SUFFIX = ".json"
 Source = str | bytes | Pasted | Kept
@@ -46,6 +47,37 @@ class Document:
 
     code: DataInput | None = None
     preset: Preset | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Lacking:
+    """A saved result whose recipe holds not all of its images.
+
+    Parameters
+    ----------
+    source
+        The file.
+    missing
+        The images, each with its role, name, size and hash.
+    """
+
+    source: str
+    missing: tuple[RecipeInput, ...]
+
+
+def lacking(source: Source) -> Lacking | None:
+    """Return which images a saved result lacks; None when it lacks none, or is no such file; in a thread."""
+    from texlab_core.documents.reading import read_recipe
+    from texlab_core.errors import NoRecipeError
+
+    if not isinstance(source, str) or source.startswith("gallery:"):
+        return None
+    try:
+        missing = read_recipe(source).missing
+    except NoRecipeError:
+        return None
+    images = {each.sha256: each for each in missing if each.kind == "image"}
+    return Lacking(source, tuple(images.values())) if images else None
 
 
 def is_document(source: Source) -> TypeGuard[str]:
@@ -77,10 +109,18 @@ def open_document(path: str) -> Document:
     return Document(preset=presets.preset_from_json(data, what=f"the preset {file.name}"))
 
 
-def open_source(source: Source, should_stop: Callable[[], bool] | None = None, alpha: str = "white") -> Opened:
+def open_source(
+    source: Source,
+    should_stop: Callable[[], bool] | None = None,
+    alpha: str = "white",
+    *,
+    given: Mapping[str, str] | None = None,
+) -> Opened:
     """Read an image or a saved result: a path, gallery:NAME, the bytes of a file, what was pasted or kept.
 
     Meant for a worker's thread.
+
+    Images that a saved result lacks are ``given`` by their roles.
 
     Raises
     ------
@@ -97,7 +137,7 @@ def open_source(source: Source, should_stop: Callable[[], bool] | None = None, a
     path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
     if path is not None or isinstance(source, bytes):
         with contextlib.suppress(NoRecipeError):
-            job = read_recipe(source).job()
+            job = read_recipe(source).job(given=given)
             image = job.inputs.get("exemplar")
             if isinstance(image, ImageInput):
                 return Opened(image, None, job)

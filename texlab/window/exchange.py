@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QMimeData, QStringListModel
 from PySide6.QtGui import QGuiApplication, QImage
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from texlab.storage.projects import SUFFIX as PROJECT
 from texlab.widgets.mime import brought_by
+from texlab.widgets.plain import message_box
 from texlab.window.save_kinds import chosen_bits, named, save_kinds
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.sizes import size_text
@@ -20,6 +21,7 @@ from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 if TYPE_CHECKING:
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
+    from texlab.storage.reading import Lacking
     from texlab.storage.settings import Settings
     from texlab.style.pictures import Picture
     from texlab.widgets.mime import Brought
@@ -46,6 +48,36 @@ class Exchange:
         if paths:
             self._settings.values["open-folder"] = str(Path(paths[0]).parent)
             self._opener.open_all(paths)
+
+    def ask_locate(self, lacking: Lacking) -> None:
+        """Ask where the images are that a saved result lacks, then open it with them."""
+        name = Path(lacking.source).name
+        kept = "; ".join(each.described for each in lacking.missing)
+        box = message_box(
+            self._window,
+            "Locate exemplar",
+            f"{name} does not hold {kept}.",
+            "It is needed to make the result again.",
+        )
+        box.setObjectName("locate-box")
+        locate = box.addButton("Locate ...", QMessageBox.ButtonRole.AcceptRole)
+        box.addButton(QMessageBox.StandardButton.Cancel)
+        locate.clicked.connect(lambda: self._locate(lacking))
+        box.open()
+
+    def _locate(self, lacking: Lacking) -> None:
+        pattern = " ".join(f"*{suffix}" for suffix in READABLE_SUFFIXES)
+        given = {}
+        for each in lacking.missing:
+            folder = str(Path(lacking.source).parent / Path(each.name).name)
+            title = f"Where is {each.name}?"
+            path, _ = QFileDialog.getOpenFileName(
+                self._window, title, folder, f"Images ({pattern});;All files (*)"
+            )
+            if not path:
+                return
+            given[each.role] = path
+        self._opener.open_located(lacking.source, given)
 
     def paste(self) -> None:
         """Take the image on the clipboard."""

@@ -9,12 +9,20 @@ from typing import TYPE_CHECKING
 from texlab.state.changes import Opened, fitting, fresh_ids, restored, sample_of, with_code, with_crop_of
 from texlab.state.session import Sample, Session
 from texlab.storage.projects import OpenedProject, is_project, open_project
-from texlab.storage.reading import Choice, Document, is_document, open_document, open_source
+from texlab.storage.reading import (
+    Choice,
+    Document,
+    Lacking,
+    is_document,
+    lacking,
+    open_document,
+    open_source,
+)
 from texlab.window.save_kinds import saved_words
 from texlab_core.engine.inputs import ImageInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
@@ -45,6 +53,7 @@ class Opener:
         self._import_preset = import_preset
         self._show_several = show_several
         self.layout_wanted: Callable[[str], None] = lambda _: None
+        self.locate_wanted: Callable[[Lacking], None] = lambda _: None
         self._newest = 0
         self._read: tuple[ImageInput, Choice] | None = None
 
@@ -77,11 +86,15 @@ class Opener:
         self._newest += 1
         number = self._newest
 
-        def work(task: Task) -> Opened:
-            return open_source(choice.source, task.should_stop, choice.alpha)
+        def work(task: Task) -> Opened | Lacking:
+            return lacking(choice.source) or open_source(choice.source, task.should_stop, choice.alpha)
 
-        def done(opened: Opened) -> None:
-            if number == self._newest:
+        def done(opened: Opened | Lacking) -> None:
+            if number != self._newest:
+                return
+            if isinstance(opened, Lacking):
+                self.locate_wanted(opened)
+            else:
                 self._take(opened, choice)
 
         def failed() -> None:
@@ -121,6 +134,17 @@ class Opener:
         self._session.apply(state, text)
         self._session.select(column_id)
         self._forget_start(first)
+
+    def open_located(self, source: str, given: Mapping[str, str]) -> None:
+        """Open a saved result with the images that it lacks, by role."""
+        self._newest += 1
+        number = self._newest
+
+        def done(opened: Opened) -> None:
+            if number == self._newest:
+                self._take(opened, Choice(source))
+
+        self._controller.once("open", lambda task: open_source(source, task.should_stop, given=given), done)
 
     def open_project(self, path: str, otherwise: Sequence[Choice] = ()) -> None:
         """Open a project file, or the first of these images when it cannot be read."""
