@@ -145,9 +145,11 @@ def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item
         scene = controller.column_scene(column.id)
         result = None if scene is None else scene.result
         # While a control is dragged, the result is of what was there before.
-        same = result is not None and result.job.key == job.key
-        # Depth and transparency are those of today's exemplar.
-        items.append(Item(job, result=dataclasses.replace(result, job=job) if same else None))
+        if result is not None and result.job.key == job.key:
+            # Depth and transparency are those of today's exemplar.
+            items.append(Item(job, result=dataclasses.replace(result, job=job)))
+        else:
+            items.append(Item(job))
     return items
 
 
