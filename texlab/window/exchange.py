@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QMimeData, QStringListModel
 from PySide6.QtGui import QGuiApplication, QImage
-from PySide6.QtWidgets import QFileDialog, QMessageBox
+from PySide6.QtWidgets import QFileDialog
 
 from texlab.storage.projects import SUFFIX as PROJECT
 from texlab.widgets.mime import brought_by
@@ -60,8 +60,8 @@ class Exchange:
             "It is needed to make the result again.",
         )
         box.setObjectName("locate-box")
-        locate = box.addButton("Locate ...", QMessageBox.ButtonRole.AcceptRole)
-        box.addButton(QMessageBox.StandardButton.Cancel)
+        locate = box.addButton("Locate ...", box.ButtonRole.AcceptRole)
+        box.addButton(box.StandardButton.Cancel)
         locate.clicked.connect(lambda: self._locate(lacking))
         box.open()
 
