@@ -28,7 +28,7 @@ def bundled() -> dict[str, Lesson]:
     for file in files:
         # The number in front only says the order.
         name = file.removesuffix(SUFFIX).partition("-")[2]
-        found[name] = lesson_from_text((folder / file).read_bytes(), what=f"the lesson {name}")
+        found[name] = lesson_from_text(resource(f"lessons/{file}").read_bytes(), what=f"the lesson {name}")
     return found
 
 
