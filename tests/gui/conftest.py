@@ -81,8 +81,11 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
         settings = Settings()
         themes = ThemeSource("light")
         window = texlab_app.build(settings, themes)
-        window.show()
-        qtbot.waitExposed(window)
+        with qtbot.waitActive(window):
+            window.show()
+            window.activateWindow()
+        # Most tests look at panels; what a first start shows is tested where the stage is.
+        settings.values.setdefault("panels", True)
         explorer = texlab_app.complete(window, settings, themes)
         opened.append(explorer)
         if columns is not None:

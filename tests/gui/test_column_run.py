@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.gui.dock_scenes import column_of
-from texlab.columns.status import details, status_parts
+from texlab.columns.status import details, figures, numbers_of, status_parts
 from texlab.runs.column_run import ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
@@ -108,9 +108,9 @@ def test_a_column_says_three_numbers_and_the_tool_tip_all():
     image = np.zeros((30, 40, 3), np.float32)
     numbers = {"discriminability": -3.456, "magnitude-difference": 0.02, "visual-difference": 0.25, "cuts": 5.0}
     column = column_of(image, measures={"copied-share": 0.5}, elapsed_s=1.0)
-    assert status_parts(column)[-1] == "copied 50%"
+    assert [each.text for each in figures(numbers_of(column))] == ["copied 50%"]
     column = dataclasses.replace(column, measures=numbers, measured_size=(30, 40))
-    assert status_parts(column)[-3:] == ["D -3.46", "V 0.25", "copied 50%"]
+    assert [each.text for each in figures(numbers_of(column))] == ["D -3.46", "V 0.25", "copied 50%"]
     lines = details(column)
     assert lines[0] == "Measured at 40 x 30:"
     assert sorted(lines[1:]) == sorted(["D -3.46", "m 0.020", "V 0.25", "copied 50%", "cuts 5.0"])
@@ -119,4 +119,5 @@ def test_a_column_says_three_numbers_and_the_tool_tip_all():
 def test_a_draft_says_its_own_size():
     column = column_of(np.zeros((30, 40, 3), np.float32), measures={}, draft=True, status="finished")
     column = dataclasses.replace(column, result=None, measures={"discriminability": -2.0}, measured_size=(30, 40))
-    assert status_parts(column) == ["draft 40 x 30", "D -2.00"]
+    assert status_parts(column) == ["draft 40 x 30"]
+    assert [each.text for each in figures(numbers_of(column))] == ["D -2.00"]

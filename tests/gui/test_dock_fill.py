@@ -135,7 +135,7 @@ def test_a_new_filled_column_is_in_sight(qtbot: Any, filling: tuple[Explorer, Fi
     qtbot.waitUntil(lambda: len(ids(explorer)) == count + 1, timeout=10_000)
     wait_idle(qtbot, explorer)
     view = explorer.workspace.columns[ids(explorer)[-1]]
-    assert explorer.workspace.horizontalScrollBar().maximum() > 0
+    assert explorer.workspace.verticalScrollBar().maximum() > 0
     qtbot.waitUntil(lambda: view.visibleRegion().boundingRect().width() == view.width())
 
 

@@ -46,6 +46,7 @@ class Window(QObject):
         super().__init__()
         self.pixel_label, self.jobs_label = Said(), Said()
         self.message_bar, self.gallery, self.parameters = Said(), Said(), Said()
+        self.gallery.strip = Said()
         self.actions_by_name = {name: QAction(self) for name in ("export", "use", "crop")}
         self.title = ""
         self.sessions = 0
@@ -81,6 +82,7 @@ class Bench:
         self.pane = pane
         self.exemplar.pane = pane
         workspace: Any = Said()
+        self.workspace = workspace
         workspace.exemplar, workspace.link = self.exemplar, self.link
         settings: Any = SimpleNamespace(recent=["a.png"])
         presets, overlays = Said(), self.overlays
@@ -141,7 +143,7 @@ def test_a_scene_reaches_every_dock_and_the_numbers_of_jobs(bench: Bench) -> Non
     assert bench.overlays.calls["show_scene"] == (scene,)
     assert bench.window.jobs_label.calls["setText"] == ("1 running · 1 failed",)
     # The larger of the result's and the source's sides, and the thinnest of all.
-    assert bench.link.calls["set_extent"] == (24, 32, 20)
+    assert bench.workspace.calls["set_extents"] == ((24, 32), (20, 30))
     assert bench.window.actions_by_name["export"].isEnabled()
     bench.presenter.show_scene(scene_of(column_of(None, **params)))
     assert not bench.window.actions_by_name["use"].isEnabled()

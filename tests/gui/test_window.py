@@ -310,6 +310,7 @@ def test_layouts(qtbot: Any, explorer: Explorer, layout: str) -> None:
 def test_themes_reach_palette_panes_and_docks(qtbot: Any, explorer: Explorer) -> None:
     explorer.window.actions_by_name["theme-dark"].trigger()
     assert QApplication.palette().window().color().lightness() < 80
+    explorer.window.actions_by_name["surround-theme"].trigger()
     pane = explorer.workspace.exemplar.pane
     assert pane.backgroundBrush().color().lightness() < 60
     explorer.window.actions_by_name["theme-light"].trigger()
@@ -530,6 +531,7 @@ def test_tuning_brings_the_threshold_table_to_the_front(
 @pytest.mark.parametrize("size", [(4, 1024), (1024, 4), (20, 1024), (300, 200)])
 def test_fit_shows_thin_pictures_too(qtbot: Any, open_window: Any, texture: Path, size: tuple[int, int]) -> None:
     explorer = open_window(str(texture), [("tiling", methods()["tiling"].params())])
+    explorer.window.actions_by_name["link"].trigger()
     explorer.session.set_size(size)
     wait_idle(qtbot, explorer)
     (column_id,) = ids(explorer)

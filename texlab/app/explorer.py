@@ -31,7 +31,9 @@ from texlab.window.handlers import Handlers
 from texlab.window.help_desk import HelpDesk
 from texlab.window.opener import Opener
 from texlab.window.presenter import Presenter
+from texlab.window.stage_settings import StageSettings
 from texlab.window.tab_pictures import TabPictures
+from texlab.window.tuning import Tuning
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import failures, methods
 from texlab_core.sheets.comparison import FIRST_SIGHT
@@ -84,7 +86,11 @@ class Explorer(QObject):
         self.opener.locate_wanted = self.exchange.ask_locate
         self.desk = HelpDesk(window, self.session)
         self.tabs = TabPictures(window, settings, self.controller)
-        self.handlers = Handlers(window, self.workspace, self.controller, self.opener, self.exchange, self.desk)
+        self.tuning = Tuning(window, self.workspace)
+        window.add_below(self.tuning.bar)
+        self.handlers = Handlers(
+            window, self.workspace, self.controller, self.opener, self.exchange, self.desk, self.tuning
+        )
         self.opener.layout_wanted = lambda layout: window.actions_by_name[f"layout-{layout}"].trigger()
         self.presenter = Presenter(
             window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
@@ -97,6 +103,7 @@ class Explorer(QObject):
         self._memory.setInterval(MEMORY_MS)
         self._memory.timeout.connect(lambda: window.memory_label.setText(memory_text()))
         window.set_workspace(self.workspace)
+        self.stage = StageSettings(window, self.workspace, settings)
         window.add_docks(self.docks)
         self.presenter.show_theme(themes.theme)
         self._connect()
@@ -172,6 +179,7 @@ class Explorer(QObject):
         for host in self.hosts:
             host.close()
         self.thumbnails.close()
+        self.tuning.close()
         self.overlays.close()
         self.controller.close()
         self.crash.remove()
@@ -206,6 +214,7 @@ class Explorer(QObject):
         session.history_changed.connect(presenter.show_session)
         session.selected.connect(lambda _: presenter.show_session())
         controller.scene_changed.connect(presenter.show_scene)
+        controller.scene_changed.connect(self.tuning.show_scene)
         controller.exemplar_ready.connect(presenter.show_exemplar)
         controller.errands_changed.connect(window.show_errands)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
@@ -216,6 +225,7 @@ class Explorer(QObject):
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
         self.themes.changed.connect(lambda _: presenter.show_theme(self.themes.theme))
         self.workspace.column_made.connect(self._connect_column)
+        self.workspace.column_moved.connect(session.move_column)
         for dock in self.docks:
             dock.intention.connect(self.carrier.carry_out)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import (
+    QBoxLayout,
     QFrame,
     QHBoxLayout,
     QMenu,
@@ -16,19 +17,23 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.columns.commands import COLUMN_COMMANDS
-from texlab.columns.status import details, status_parts
+from texlab.columns.foot import Foot, body_frame
+from texlab.columns.grip import Grip
+from texlab.columns.history_popup import numbers_before
+from texlab.columns.numbers_popup import NumbersPopup
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import set_tip
 from texlab.widgets.short_box import ShortBox
-from texlab.widgets.status_line import StatusLine, strut
+from texlab.widgets.status_line import strut
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from PySide6.QtGui import QAction, QContextMenuEvent, QFocusEvent, QMouseEvent
+    from PySide6.QtGui import QAction, QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
+    from texlab.columns.arrangement import Frame, Words
     from texlab.state.scene import ColumnScene
     from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
@@ -43,6 +48,8 @@ class ColumnView(QFrame):
     hovered = Signal(int, int, int)
     pixel_clicked = Signal(int, int, int)
     map_chosen = Signal(int, str)
+    dragged = Signal(int, object, bool)
+    enlarged = Signal(int)
 
     def __init__(
         self, column_id: int, methods: Iterable[tuple[str, str]], link: ViewLink, parent: QWidget | None = None
@@ -54,11 +61,9 @@ class ColumnView(QFrame):
         self.setProperty("chosen", False)
         self.setProperty("failed", False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumWidth(140)
         self.method_box = ShortBox()
         self.method_box.setObjectName(f"method-{column_id}")
         self.method_box.setAccessibleName("Method of this column")
-        set_tip(self.method_box, "The method of this column")
         for identifier, title in methods:
             self.method_box.addItem(title, identifier)
         self.run_button = self._button("▶", "Run this column again", "run")
@@ -71,6 +76,7 @@ class ColumnView(QFrame):
                 continue
             action = self.menu.addAction(command.own)
             action.setObjectName(f"column-{name}-{column_id}")
+            action.setCheckable(command.checkable)
             action.triggered.connect(lambda _=False, name=name: self.command.emit(self.column_id, name))
             self.actions_by_name[name] = action
         self.menu.addSeparator()
@@ -87,27 +93,33 @@ class ColumnView(QFrame):
         self.progress.setObjectName(f"progress-{column_id}")
         self.progress.setRange(0, 1000)
         self.progress.setTextVisible(False)
-        self.line = StatusLine()
-        self.line.setObjectName(f"line-{column_id}")
+        self.progress.hide()
+        self.foot = Foot(f"line-{column_id}")
+        self.line = self.foot.line
         self.progress.setAccessibleName("Progress of this column")
         self.stop_button.hide()
-        buttons = QHBoxLayout()
-        buttons.setSpacing(2)
-        buttons.addWidget(self.progress, 1, Qt.AlignmentFlag.AlignVCenter)
+        self.grip = Grip(f"grip-{column_id}")
+        self.head = QHBoxLayout()
+        self.head.setSpacing(1)
+        self.head.addWidget(self.grip)
+        self.head.addWidget(self.method_box, 1)
         for button in (self.run_button, self.stop_button, self.menu_button):
-            buttons.addWidget(button)
+            self.head.addWidget(button)
         # The row is as high as that of the exemplar.
         crop = QToolButton()
         crop.setText("Crop")
         for model in (NumberBox(), crop):
-            buttons.addWidget(strut(model))
+            self.head.addWidget(strut(model))
+        self.body = QBoxLayout(QBoxLayout.Direction.TopToBottom)
+        self.body.setSpacing(2)
+        self.body.addWidget(self.pane, 1)
+        self.body.addWidget(self.foot)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(4, 4, 4, 4)
-        layout.setSpacing(3)
-        layout.addWidget(self.method_box)
-        layout.addWidget(self.pane, 1)
-        layout.addLayout(buttons)
-        layout.addWidget(self.line)
+        layout.setContentsMargins(1, 1, 1, 1)
+        layout.setSpacing(1)
+        layout.addLayout(self.head)
+        layout.addLayout(self.body, 1)
+        self.progress.setParent(self.pane)
         self.method_box.activated.connect(
             lambda place: self.method_chosen.emit(self.column_id, self.method_box.itemData(place))
         )
@@ -116,7 +128,7 @@ class ColumnView(QFrame):
         self.pane.clicked.connect(self._pane_clicked)
         self.pane.hovered.connect(lambda row, column: self.hovered.emit(self.column_id, row, column))
         for part in (
-            self.line,
+            self.grip,
             self.progress,
             self.method_box,
             self.run_button,
@@ -124,6 +136,43 @@ class ColumnView(QFrame):
             self.menu_button,
         ):
             part.installEventFilter(self)
+        self.pane.double_clicked.connect(lambda: self.enlarged.emit(self.column_id))
+        self.grip.dragged.connect(lambda at, final: self.dragged.emit(self.column_id, at, final))
+        self.grip.double_clicked.connect(lambda: self.command.emit(self.column_id, "rename"))
+        self.foot.clicked.connect(lambda: self.chosen.emit(self.column_id))
+        self.foot.details_wanted.connect(self.show_numbers)
+        self.show_title("")
+
+    def frame_of(self, words: Words) -> Frame:
+        """Return what is around the picture when the words stand there."""
+        return body_frame(self, self.head, self.foot, words)
+
+    def set_words(self, words: Words) -> None:
+        """Show the words there."""
+        self.foot.set_words(words)
+        ways = QBoxLayout.Direction
+        self.body.setDirection(ways.LeftToRight if words == "beside" else ways.TopToBottom)
+
+    def show_title(self, title: str) -> None:
+        """Say what the column is."""
+        self.method_box.set_label(title)
+        set_tip(self.method_box, f"{title}\nClick: another method for this column" if title else "The method")
+
+    def show_numbers(self) -> None:
+        """Show every number about the picture."""
+        if self.scene is not None:
+            popup = NumbersPopup(self.method_box.label, self.scene, self.foot.before, self)
+            popup.move(self.foot.mapToGlobal(self.foot.rect().topLeft()) - QPoint(0, popup.height()))
+            popup.show()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the bar of progress at the lower edge of the picture."""
+        super().resizeEvent(event)
+        self._place_progress()
+
+    def _place_progress(self) -> None:
+        height = self.progress.sizeHint().height()
+        self.progress.setGeometry(0, self.pane.height() - height, self.pane.width(), height)
 
     def _button(self, text: str, tip: str, name: str) -> QToolButton:
         button = QToolButton()
@@ -150,8 +199,13 @@ class ColumnView(QFrame):
             self.progress.setAccessibleName(f"Progress of {scene.title}")
         if before is None or before.picture is not scene.picture:
             self.pane.set_picture(scene.picture)
-        self.progress.setValue(round(1000 * scene.fraction) if scene.status == "running" else 0)
-        self.line.show_parts(status_parts(scene), details(scene))
+        running = scene.status == "running"
+        self.progress.setVisible(running)
+        if running:
+            self._place_progress()
+        self.progress.setValue(round(1000 * scene.fraction) if running else 0)
+        self.foot.before = numbers_before(scene)
+        self.foot.show_scene(scene)
         failed = scene.status == "failed"
         self.pane.set_note(scene.message if failed and scene.picture is None else "")
         role = "error" if failed else "muted"
@@ -165,6 +219,8 @@ class ColumnView(QFrame):
         for name in ("export", "use"):
             self.actions_by_name[name].setEnabled(scene.result is not None)
         self.actions_by_name["copy"].setEnabled(scene.picture is not None)
+        self.actions_by_name["pin"].setChecked(scene.pinned)
+        self.actions_by_name["own-seed"].setChecked(scene.seed is not None)
         self._set_flag("failed", failed)
 
     def show_maps(self, maps: tuple[tuple[str, str], ...], chosen: str) -> None:

@@ -63,6 +63,30 @@ COLUMN_COMMANDS = {
             own="Use result as exemplar",
         ),
         Command(
+            "&Column", "enlarge", "Enlarge column", "M", "Show the chosen column alone, or all of them again",
+            own="Enlarge, or put back",
+        ),
+        Command(
+            "&Column", "rename", "Rename column ...", "F2", "Call the chosen column by a name of its own",
+            own="Rename ...",
+        ),
+        Command(
+            "&Column", "history", "Earlier results ...", "H", "The finished results of the column, to go back to",
+            own="Earlier results ...",
+        ),
+        Command(
+            "&Column", "pin", "Pin column", "P", "Keep the chosen column in front, and when others replace all",
+            own="Pin in front", checkable=True,
+        ),
+        Command(
+            "&Column", "own-seed", "Seed of its own", "", "The dice for all columns leaves this column's seed",
+            own="Lock the seed", checkable=True,
+        ),
+        Command(
+            "&Column", "new-seed", "New seed for this column", "Shift+D", "Another seed for this column alone",
+            own="New seed for this column",
+        ),
+        Command(
             "&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column",
             own="Remove column",
         ),

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QVBoxLayout
+from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QVBoxLayout
 
+from texlab.columns.foot import Foot, body_frame
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
-from texlab.widgets.status_line import StatusLine, strut
+from texlab.widgets.status_line import strut
 from texlab_core.engine.inputs import Crop
 from texlab_core.images.unit_range import use_of_alpha
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
+    from texlab.columns.arrangement import Frame, Words
     from texlab.state.session import Sample
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
@@ -64,11 +66,11 @@ class ExemplarView(QFrame):
     scale_changed = Signal(float)
     hovered = Signal(int, int)
     clicked = Signal(int, int)
+    enlarged = Signal()
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("column")
-        self.setMinimumWidth(140)
         self.title = Label("Exemplar")
         self.title.setObjectName("exemplar-title")
         self.title.setProperty("role", "heading")
@@ -95,8 +97,8 @@ class ExemplarView(QFrame):
         self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
         self.scale_box.setPrefix("×")
-        self.line = StatusLine()
-        self.line.setObjectName("exemplar-line")
+        self.foot = Foot("exemplar-line", has_figures=False)
+        self.line = self.foot.line
         self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
         self.pane.setAccessibleName("Exemplar")
@@ -109,37 +111,47 @@ class ExemplarView(QFrame):
         self._rest.setInterval(SETTLE_MS)
         self._rest.timeout.connect(self._settle)
         self.pane.installEventFilter(self)
-        head = QHBoxLayout()
-        head.setSpacing(0)
-        head.addWidget(self.title, 1)
         self.choices = QToolButton()
         self.choices.setObjectName("exemplar-choices")
         self.choices.setAutoRaise(True)
         self.choices.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.choices.setMenu(QMenu(self.choices))
         self.choices.hide()
-        head.addWidget(self.choices)
-        # The rows are as high as those of the columns.
-        head.addWidget(strut(ShortBox()))
-        controls = QHBoxLayout()
-        controls.setSpacing(2)
-        controls.addWidget(self.crop_button)
-        controls.addStretch(1)
+        self.head = QHBoxLayout()
+        self.head.setSpacing(2)
+        self.head.addWidget(self.title, 1)
+        self.head.addWidget(self.choices)
+        self.head.addWidget(self.crop_button)
+        self.head.addWidget(self.scale_box)
+        # The row is as high as those of the columns.
         button = QToolButton()
         button.setText("▶■⋯")
-        controls.addWidget(strut(button))
-        controls.addWidget(self.scale_box)
+        for model in (ShortBox(), button):
+            self.head.addWidget(strut(model))
+        self.body = QBoxLayout(QBoxLayout.Direction.TopToBottom)
+        self.body.setSpacing(2)
+        self.body.addWidget(self.pane, 1)
+        self.body.addWidget(self.foot)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(4, 4, 4, 4)
-        layout.setSpacing(3)
-        layout.addLayout(head)
-        layout.addWidget(self.pane, 1)
-        layout.addLayout(controls)
-        layout.addWidget(self.line)
+        layout.setContentsMargins(1, 1, 1, 1)
+        layout.setSpacing(1)
+        layout.addLayout(self.head)
+        layout.addLayout(self.body, 1)
         self.crop_button.clicked.connect(self._toggle)
         self.scale_box.valueChanged.connect(self.scale_changed)
         self.pane.hovered.connect(self.hovered)
         self.pane.clicked.connect(self.clicked)
+        self.pane.double_clicked.connect(self.enlarged)
+
+    def frame_of(self, words: Words) -> Frame:
+        """Return what is around the picture when the words stand there."""
+        return body_frame(self, self.head, self.foot, words)
+
+    def set_words(self, words: Words) -> None:
+        """Show the words there."""
+        self.foot.set_words(words)
+        ways = QBoxLayout.Direction
+        self.body.setDirection(ways.LeftToRight if words == "beside" else ways.TopToBottom)
 
     def show_source(self, picture: Picture | None) -> None:
         """Show the scaled source."""

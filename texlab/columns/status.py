@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab.style.numbers import duration, remaining
@@ -59,7 +60,6 @@ def status_parts(scene: ColumnScene) -> list[str]:
             parts.append("from a code, not the exemplar")
     if scene.status == "finished":
         parts += signs(scene.findings)
-        parts += headline(numbers_of(scene))
     return parts
 
 
@@ -76,12 +76,42 @@ def numbers_of(scene: ColumnScene) -> dict[str, float]:
     return {**said, **scene.measures}
 
 
-def headline(numbers: Mapping[str, float]) -> list[str]:
-    """Return the few numbers that are shown at once, in words."""
+@dataclass(frozen=True)
+class Figure:
+    """A number that is shown large.
+
+    Parameters
+    ----------
+    text
+        Title and value, with a mark where it became better or worse.
+    tip
+        What it says, what the mark is about, and what is known about its limits.
+    """
+
+    text: str
+    tip: str
+
+
+def figures(numbers: Mapping[str, float], before: Mapping[str, float] | None = None) -> list[Figure]:
+    """Return the few numbers that are shown at once; ▲ is better than ``before``, ▼ worse."""
+    from texlab_core.measures.limits import LIMITS
     from texlab_core.measures.registry import measures, written
 
-    ids = [each.id for each in measures().values() if each.id in numbers and not each.part_of]
-    return written(numbers, ids[:MOST_NUMBERS])
+    chosen = [each for each in measures().values() if each.id in numbers and not each.part_of][:MOST_NUMBERS]
+    made = []
+    for each in chosen:
+        value, old = numbers[each.id], (before or {}).get(each.id)
+        (text,) = written(numbers, [each.id])
+        tip = [each.summary]
+        if each.id in LIMITS:
+            limit = LIMITS[each.id]
+            tip.append(f"{limit.zone(value).capitalize()}. {limit.evidence}")
+        mark = ""
+        if old is not None and each.text(old) != each.text(value) and each.better != "neither":
+            mark = "▲" if (value < old) == (each.better == "lower") else "▼"
+            tip.append(f"{'Better' if mark == '▲' else 'Worse'} than the result before: {each.text(old)}.")
+        made.append(Figure(f"{text} {mark}".rstrip(), "\n".join(tip)))
+    return made
 
 
 def details(scene: ColumnScene) -> list[str]:

@@ -1,66 +1,89 @@
-"""The middle of the window: the exemplar and the columns side by side, with linked views."""
+"""The stage: the exemplar and the columns, as large as there is room, with linked views."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QSplitter, QWidget
+from PySide6.QtCore import QPoint, QRect, QSize, QTimer, Signal
+from PySide6.QtWidgets import QFrame, QRubberBand, QScrollArea
 
 from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
+from texlab.columns.grid import Grid
+from texlab.columns.titles import titles
 from texlab.style.pictures import Mark
 from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from PySide6.QtGui import QResizeEvent
+    from PySide6.QtWidgets import QWidget
+
+    from texlab.columns.arrangement import Rows
     from texlab.state.scene import Scene
     from texlab.style.theme import Theme
+
+# The id that stands for the exemplar where a column could stand.
+EXEMPLAR = 0
 
 
 class Workspace(QScrollArea):
     """Shows a :class:`Scene`: one view per column, added and removed as the scene says.
 
-    ``column_made(view)`` lets the window connect what the user does in it.
+    ``column_made(view)`` lets the window connect what the user does in it, ``column_gone(view)`` comes before it
+    is deleted; ``column_moved(id, by)`` when one is dragged to another place; ``arranged()`` when cells have come,
+    gone, or changed their places.
     """
 
     column_made = Signal(object)
+    column_moved = Signal(int, int)
+    column_gone = Signal(object)
+    arranged = Signal()
 
     def __init__(self, methods: Iterable[tuple[str, str]], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("workspace")
         self.setAccessibleName("Exemplar and columns")
+        self.setFrameShape(QFrame.Shape.NoFrame)
         self.setWidgetResizable(True)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setMinimumSize(160, 120)
         self._methods = tuple(methods)
         self.link = ViewLink()
+        self.exemplar_link = ViewLink()
         self.columns: dict[int, ColumnView] = {}
-        self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        self.splitter.setObjectName("columns")
-        self.splitter.setChildrenCollapsible(False)
-        self.splitter.setHandleWidth(5)
-        self.exemplar = ExemplarView(self.link)
-        self.splitter.addWidget(self.exemplar)
-        inner = QWidget()
-        layout = QHBoxLayout(inner)
-        layout.setContentsMargins(4, 4, 4, 4)
-        layout.addWidget(self.splitter)
-        self.setWidget(inner)
-        self._inner = inner
+        self.grid = Grid()
+        self.exemplar = ExemplarView(self.exemplar_link, self.grid)
+        self.setWidget(self.grid)
+        self._landing = QRubberBand(QRubberBand.Shape.Rectangle, self.grid)
+        self._linked = False
         self._tiled = False
+        self._surround = ""
         self._theme: Theme | None = None
         self._order: tuple[int, ...] = ()
+        self._only: tuple[int, ...] | None = None
+        self._enlarged: int | None = None
+        self._extents = (1, 1), (1, 1)
         self._revealed = 0
         self._chosen = 0
-        # Columns have come or gone, or the window is narrower.
-        self.horizontalScrollBar().rangeChanged.connect(lambda *_: self._scroll())
+        # Cells change their needs one by one (a font, a name): they are placed once.
+        self._placing = QTimer(self)
+        self._placing.setSingleShot(True)
+        self._placing.setInterval(0)
+        self._placing.timeout.connect(self.place)
+        self.exemplar.enlarged.connect(lambda: self.enlarge(EXEMPLAR))
+        for bar in (self.horizontalScrollBar(), self.verticalScrollBar()):
+            # Columns have come or gone, or the window is smaller.
+            bar.rangeChanged.connect(lambda *_: self._scroll())
+
+    # What there is.
 
     def show_scene(self, scene: Scene) -> None:
         """Show every column as it is."""
         wanted = [column.id for column in scene.columns]
         for column_id in [known for known in self.columns if known not in wanted]:
             view = self.columns.pop(column_id)
+            self.column_gone.emit(view)
             view.pane.detach()
             view.setParent(None)
             view.deleteLater()
@@ -70,42 +93,98 @@ class Workspace(QScrollArea):
         order = tuple(wanted)
         if order != self._order:
             self._order = order
-            for place, column_id in enumerate(wanted):
-                self.splitter.insertWidget(place + 1, self.columns[column_id])
-            self.splitter.setSizes([1000] * (len(wanted) + 1))
-            self.link.resized()
-        for column in scene.columns:
+            if self._enlarged not in (None, EXEMPLAR, *order):
+                self._enlarged = None
+            self._show_cells()
+        for column, title in zip(scene.columns, titles(scene.columns), strict=True):
             view = self.columns[column.id]
+            view.show_title(title)
             view.show_scene(column)
             view.set_chosen(column.id == scene.selected_id)
             view.pane.set_marks(pinned_pixel(scene, column.id))
         if scene.selected_id != self._chosen:
             self._chosen = scene.selected_id
             chosen = self.columns.get(self._chosen)
+            if self._enlarged not in (None, EXEMPLAR, self._chosen) and chosen is not None:
+                self.enlarge(self._chosen)
             # What is clicked stays under the pointer; a new column may have come there by chance.
             if chosen is not None and (self._chosen in added or not chosen.underMouse()):
                 self.reveal(self._chosen)
 
     def _add(self, column_id: int) -> None:
-        view = ColumnView(column_id, self._methods, self.link)
+        view = ColumnView(column_id, self._methods, self.link, self.grid)
         view.pane.set_tiled(self._tiled)
+        view.pane.set_surround(self._surround)
         if self._theme is not None:
-            view.set_theme(self._theme)
+            self._paint(view)
+        view.dragged.connect(self._drag)
+        view.enlarged.connect(self.enlarge)
         self.columns[column_id] = view
         self.column_made.emit(view)
 
-    def set_tiled(self, tiled: bool) -> None:
-        """Show results 2 x 2."""
-        self._tiled = tiled
-        for view in self.columns.values():
-            view.pane.set_tiled(tiled)
+    # Where it stands.
 
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self._theme = theme
-        self.exemplar.set_theme(theme)
-        for view in self.columns.values():
-            view.set_theme(theme)
+    @property
+    def enlarged(self) -> int | None:
+        """Id of the column that is shown alone (0: the exemplar), or None."""
+        return self._enlarged
+
+    def enlarge(self, column_id: int) -> None:
+        """Show one alone; all of them again when it is alone already."""
+        self._enlarged = None if self._enlarged == column_id else column_id
+        self._show_cells()
+
+    def show_only(self, column_ids: tuple[int, ...] | None) -> None:
+        """Fold away all columns but these; None unfolds all."""
+        if column_ids != self._only:
+            self._only = column_ids
+            self._enlarged = None
+            self._show_cells()
+
+    @property
+    def shown_ids(self) -> tuple[int, ...]:
+        """Ids of the columns that are not folded away."""
+        if self._only is None:
+            return self._order
+        return tuple(each for each in self._only if each in self.columns) or self._order
+
+    def set_rows(self, rows: Rows) -> None:
+        """Arrange the pictures in one row, in two, or in as many as make them largest."""
+        self.grid.rows = rows
+        self.place()
+
+    def _show_cells(self) -> None:
+        cells: list[ExemplarView | ColumnView] = [self.exemplar, *(self.columns[each] for each in self.shown_ids)]
+        if self._enlarged is not None:
+            cells = [self.exemplar if self._enlarged == EXEMPLAR else self.columns[self._enlarged]]
+        for view in (self.exemplar, *self.columns.values()):
+            if view not in cells:
+                view.hide()
+        self.grid.show_cells(cells)
+        self.place()
+
+    def place(self) -> None:
+        """Give every picture the room there is."""
+        self._placing.stop()
+        size = self.maximumViewportSize()
+        self.grid.place((size.width(), size.height()))
+        made = self.grid.arrangement
+        if made is not None and made.total[1] > size.height() >= 0 and made.total[0] <= size.width():
+            # The bar that is then needed takes some of the width.
+            bar = self.verticalScrollBar().sizeHint().width()
+            self.grid.place((size.width() - bar, size.height()))
+        self.link.resized()
+        self.exemplar_link.resized()
+        self.arranged.emit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Use the room there is."""
+        super().resizeEvent(event)
+        self.place()
+
+    def minimumSizeHint(self) -> QSize:
+        """Let the window be small: the stage scrolls."""
+        return self.minimumSize()
 
     def reveal(self, column_id: int) -> None:
         """Scroll a column into sight, also one that has no place yet."""
@@ -114,9 +193,92 @@ class Workspace(QScrollArea):
 
     def _scroll(self) -> None:
         view = self.columns.get(self._revealed)
-        if view is not None:
-            at = view.mapTo(self._inner, QPoint(view.width() // 2, 0))
-            self.ensureVisible(at.x(), at.y(), view.width() // 2 + 8, 0)
+        if view is not None and not view.isHidden():
+            at = view.geometry().center()
+            self.ensureVisible(at.x(), at.y(), view.width() // 2 + 2, view.height() // 2 + 2)
+
+    def _drag(self, column_id: int, at: QPoint, final: bool) -> None:
+        """Show where a column would stand, and move it there at the end."""
+        cells = self.grid.cells
+        view = self.columns[column_id]
+        if view not in cells or self.grid.arrangement is None:
+            return
+        place = max(self.grid.place_at(self.grid.mapFromGlobal(at)), cells.index(self.columns[self.shown_ids[0]]))
+        self._landing.setGeometry(QRect(*self.grid.arrangement.cell(place)))
+        self._landing.setVisible(not final)
+        self._landing.raise_()
+        if final:
+            # Columns that are folded away keep their places.
+            there = self.shown_ids[place - (cells.index(view) - self.shown_ids.index(column_id))]
+            by = self._order.index(there) - self._order.index(column_id)
+            if by:
+                self.column_moved.emit(column_id, by)
+
+    # What is seen of it.
+
+    def set_extents(self, results: tuple[int, int], source: tuple[int, int]) -> None:
+        """Say how large (height, width) the results and the source of the exemplar are or will be."""
+        self._extents = results, source
+        self.grid.aspect = results[1] / results[0]
+        both = [max(sides) for sides in zip(results, source, strict=True)]
+        if self._linked:
+            self.link.set_extent(both[0], both[1], min(*results, *source))
+        else:
+            self.link.set_extent(*results, min(results))
+            self.exemplar_link.set_extent(*source, min(source))
+
+    @property
+    def linked(self) -> bool:
+        """Whether the exemplar is panned and zoomed with the results."""
+        return self._linked
+
+    def set_linked(self, linked: bool) -> None:
+        """Pan and zoom the exemplar with the results, or by its own size."""
+        if linked != self._linked:
+            self._linked = linked
+            self.exemplar.pane.follow(self.link if linked else self.exemplar_link)
+            self.set_extents(*self._extents)
+            self.fit()
+
+    def fit(self) -> None:
+        """Show the pictures whole."""
+        self.link.fit()
+        self.exemplar_link.fit()
+
+    def actual_size(self) -> None:
+        """Show one image pixel per screen pixel."""
+        self.link.actual_size()
+        self.exemplar_link.actual_size()
+
+    def zoom(self, factor: float) -> None:
+        """Enlarge around the centres."""
+        self.link.zoom(factor)
+        self.exemplar_link.zoom(factor)
+
+    def set_tiled(self, tiled: bool) -> None:
+        """Show results 2 x 2."""
+        self._tiled = tiled
+        for view in self.columns.values():
+            view.pane.set_tiled(tiled)
+
+    def set_surround(self, colour: str) -> None:
+        """Paint this around all pictures, as ``#rrggbb``; "" leaves it to the theme."""
+        self._surround = colour
+        if self._theme is not None:
+            self.set_theme(self._theme)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        self._paint(self.exemplar)
+        for view in self.columns.values():
+            self._paint(view)
+        self._placing.start()
+
+    def _paint(self, view: ExemplarView | ColumnView) -> None:
+        assert self._theme is not None
+        view.set_theme(self._theme)
+        view.pane.set_surround(self._surround)
 
 
 def pinned_pixel(scene: Scene, column_id: int) -> tuple[Mark, ...]:

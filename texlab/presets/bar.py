@@ -85,6 +85,11 @@ class PresetBar(QWidget):
                     self.box.setCurrentIndex(place + 1)
         self._update_menu()
 
+    @property
+    def presets(self) -> tuple[Preset, ...]:
+        """What is listed."""
+        return tuple(self._presets)
+
     def forget_current(self) -> None:
         """Show that the parameters are no preset's any more."""
         with QSignalBlocker(self.box):

@@ -24,6 +24,7 @@ from texlab.runs.column_run import (
 )
 from texlab.runs.drafts import draft_size
 from texlab.runs.kept_results import KeptResults
+from texlab.runs.past import measured, past_of, remembered
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.worker import Worker
 from texlab.state.scene import ColumnScene
@@ -69,6 +70,7 @@ class ColumnRunner(QObject):
         self._shared = shared
         method = find_method(column.method)
         self.scene = ColumnScene(column.id, method.id, method.title, column.params, inputs=column.inputs)
+        self.label(column)
         self.seconds: float | None = None
         """What the full size takes, as far as that is known."""
         self.drafted = False
@@ -158,10 +160,11 @@ class ColumnRunner(QObject):
             column,
             exemplar,
             full if own_draft or size is None else size,
-            state.seed,
+            state.seed_of(column),
             self._kept if go_on else None,
         )
-        kept = None if draft or go_on else self._shared.kept.get(key_of(column, exemplar, full, state.seed))
+        key = key_of(column, exemplar, full, state.seed_of(column))
+        kept = None if draft or go_on else self._shared.kept.get(key)
         if kept is not None:
             # The same job has the same bits: what was finished is shown, before anything else takes a place.
             self._run = None
@@ -197,6 +200,13 @@ class ColumnRunner(QObject):
                 "elapsed_s": 0.0,
             }
         self._show(**changes)
+
+    def label(self, column: Column) -> None:
+        """Show what decides no pixels: name, pin, whose seed it is."""
+        labels = {"name": column.name, "pinned": column.pinned, "seed": column.seed}
+        if any(getattr(self.scene, name) != value for name, value in labels.items()):
+            self.scene = dataclasses.replace(self.scene, **labels)  # type: ignore[arg-type]
+            self.changed.emit()
 
     def stop(self) -> None:
         """Stop; it can go on from there where the method knows how."""
@@ -266,7 +276,10 @@ class ColumnRunner(QObject):
     def _finished(self, end: Finished | Drafted | Measured) -> None:
         if isinstance(end, Measured):
             self._measuring, self._measured_s = False, time.monotonic()
-            self._show(measures=end.measures, measured_size=end.size, findings=end.findings)
+            history = self.scene.history
+            if not self.scene.draft and self.scene.result is not None:
+                history = measured(history, self.scene.result.job.key, end.measures)
+            self._show(measures=end.measures, measured_size=end.size, findings=end.findings, history=history)
             return
         self._came(end)
         if not self.worker.behind and self._exemplar is not None:
@@ -303,6 +316,7 @@ class ColumnRunner(QObject):
         }
         if not end.draft:
             changes |= {"frames": end.frames, "measures": {}}
+            changes["history"] = remembered(self.scene.history, past_of(end.result.job, end.picture))
         self._show(**changes)
 
     def _failed(self, sentence: str) -> None:

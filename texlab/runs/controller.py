@@ -321,6 +321,8 @@ class Controller(QObject):
             self._let_go(self._runners.pop(column_id))
         for column_id in changes.added:
             self._add_runner(column_id)
+        for column in after.columns:
+            self._runners[column.id].label(column)
         if changes.sample or changes.added:
             self._wish(after)
         if changes.sample:

@@ -48,7 +48,7 @@ def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput
         inputs=with_exemplar(exemplar, column.inputs),
         params=column.params if plan.params is None else plan.params,
         size=size,
-        seed=state.seed,
+        seed=state.seed_of(column),
     )
     sweep = Sweep(base, plan.axes)
     # Of solids only the slices that are shown are kept.

@@ -185,6 +185,10 @@ def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State,
     for column in (*columns, *state.columns):
         if column.method == cell.job.method:
             changed = state.with_column(dataclasses.replace(column, params=cell.job.params))
-            seed = cell.job.seed if "seed" in cell.values else state.seed
-            return dataclasses.replace(changed, seed=seed), column.id
+            if "seed" not in cell.values:
+                return changed, column.id
+            if column.seed is None:
+                return dataclasses.replace(changed, seed=cell.job.seed), column.id
+            own = dataclasses.replace(column, params=cell.job.params, seed=cell.job.seed)
+            return state.with_column(own), column.id
     return None

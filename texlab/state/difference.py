@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from texlab.state.session import State
+    from texlab.state.session import Column, State
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,7 @@ def difference(before: State, after: State) -> Difference:
     """Return what differs between two states, in terms of what has to be done."""
     old = {column.id: column for column in before.columns}
     new = {column.id: column for column in after.columns}
-    same_frame = before.seed == after.seed and before.size == after.size
-    run = tuple(key for key, column in new.items() if not same_frame or old.get(key) != column)
+    run = tuple(key for key, column in new.items() if key not in old or not _same(old[key], column, before, after))
     before_key = before.sample.key if before.sample is not None else None
     after_key = after.sample.key if after.sample is not None else None
     return Difference(
@@ -33,3 +32,8 @@ def difference(before: State, after: State) -> Difference:
         removed=tuple(key for key in old if key not in new),
         run=run,
     )
+
+
+def _same(old: Column, new: Column, before: State, after: State) -> bool:
+    """Whether a column has the same result in both states: names and places decide no pixels."""
+    return old.work == new.work and before.seed_of(old) == after.seed_of(new) and before.size == after.size

@@ -12,7 +12,7 @@ from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Hashable, Mapping
 
     from texlab.state.sweeps import ShownCell
     from texlab.style.pictures import Picture
@@ -43,6 +43,35 @@ class Frame:
     @cached_property
     def _gray(self) -> FloatImage:
         return np.multiply(self.picture[..., :1], np.float32(1 / 255), dtype=np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class Past:
+    """A finished result of a column, small, with what makes it again.
+
+    Parameters
+    ----------
+    key
+        Of its job: what has the same key has the same bits.
+    exemplar
+        Hash of the exemplar.
+    method, params, inputs, size, seed
+        What it was made with, besides the exemplar.
+    thumbnail
+        At most 64 pixels wide and high, (h, w, 3) uint8.
+    measures
+        Numbers about it by id; empty until it has been measured.
+    """
+
+    key: Hashable
+    exemplar: str
+    method: str
+    params: Params
+    inputs: tuple[tuple[str, Input], ...]
+    size: tuple[int, ...]
+    seed: int
+    thumbnail: Picture
+    measures: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +116,14 @@ class ColumnScene:
         What the column works on besides the exemplar (a code of 69 numbers, say).
     size
         Height and width of its full result, or depth, height and width; empty before the first run.
+    name
+        What the user called it; "" leaves that to what differs from other columns.
+    pinned
+        It stays in front.
+    seed
+        Its own; None is that of all columns.
+    history
+        Its finished results, the newest last.
     """
 
     id: int
@@ -109,6 +146,10 @@ class ColumnScene:
     resumable: bool = False
     inputs: tuple[tuple[str, Input], ...] = ()
     size: tuple[int, ...] = ()
+    name: str = ""
+    pinned: bool = False
+    seed: int | None = None
+    history: tuple[Past, ...] = ()
 
 
 @dataclass(frozen=True)

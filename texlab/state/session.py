@@ -13,12 +13,14 @@ from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import default_size, size_text
 
 if TYPE_CHECKING:
+    from texlab.state.scene import Past
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
     from texlab_core.images.unit_range import Alpha
 
 MAX_HISTORY = 200
 MAX_HISTORY_BYTES = 2**30
+MAX_NAME = 80
 
 
 # Use and background, as the door takes them.
@@ -66,6 +68,12 @@ class Column:
     size
         Height and width of its result; None is the session's. Depth, height and width for a method of three
         dimensions; None is then a cube with the session's shorter side, at most 64.
+    name
+        What the user called it; "" leaves that to what differs from other columns.
+    pinned
+        It stands first and stays when other columns are put in the place of all.
+    seed
+        Its own, 0 .. 2147483647; None is the session's.
     """
 
     id: int
@@ -73,6 +81,14 @@ class Column:
     params: Params
     inputs: tuple[tuple[str, Input], ...] = ()
     size: tuple[int, ...] | None = None
+    name: str = ""
+    pinned: bool = False
+    seed: int | None = None
+
+    @property
+    def work(self) -> tuple[object, ...]:
+        """What decides the pixels, but for what all columns share."""
+        return (self.method, self.params, self.inputs, self.size, self.seed)
 
 
 @dataclass(frozen=True)
@@ -92,6 +108,10 @@ class State:
     def size_of(self, column: Column) -> tuple[int, ...]:
         """Return the size of a column's result."""
         return column.size or default_size(self.size, find_method(column.method).dimensions)
+
+    def seed_of(self, column: Column) -> int:
+        """Return the seed of a column's result."""
+        return self.seed if column.seed is None else column.seed
 
     def with_column(self, changed: Column) -> State:
         """Return a state in which the column with the same id is replaced."""
@@ -251,7 +271,7 @@ class Session(QObject):
         """Give a column another method."""
         column = self.state.column(column_id)
         if column is not None and column.method != method:
-            changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None)
+            changed = dataclasses.replace(column, method=method, params=params, inputs=(), size=None, name="")
             self.apply(self.state.with_column(changed), f"method {method}")
 
     def set_column_size(self, column_id: int, size: tuple[int, ...], *, merge: object | None = None) -> None:
@@ -268,6 +288,29 @@ class Session(QObject):
         column = self.state.column(column_id)
         if column is not None:
             self.apply(self.state.with_column(dataclasses.replace(column, inputs=inputs)), text, merge=merge)
+
+    def take_past(self, column_id: int, past: Past) -> None:
+        """Give a column back what one of its finished results was made with."""
+        column = self.state.column(column_id)
+        if column is not None:
+            self.apply(self.state.with_column(self._as_then(column, past)), "earlier result")
+
+    def compare_past(self, column_id: int, past: Past) -> int:
+        """Put an earlier result of a column into a new one behind it; returns its id, or 0."""
+        copy = self.duplicate_column(column_id)
+        column = self.state.column(copy)
+        if column is not None:
+            self.apply(self.state.with_column(self._as_then(column, past)), "earlier result")
+        return copy
+
+    def _as_then(self, column: Column, past: Past) -> Column:
+        """Return a column as it was; what all columns share by now is not made its own."""
+        then = dataclasses.replace(
+            column, method=past.method, params=past.params, inputs=past.inputs, size=None, seed=None
+        )
+        size = None if self.state.size_of(then) == past.size else past.size
+        seed = None if self.state.seed == past.seed else past.seed
+        return dataclasses.replace(then, size=size, seed=seed)
 
     def add_column(self, method: str, params: Params, *, after: int | None = None) -> int:
         """Add a column behind the one with the id ``after`` (at the end without); returns its id."""
@@ -303,8 +346,10 @@ class Session(QObject):
         if column is None:
             return 0
         state = self.state
-        copy = dataclasses.replace(column, id=state.next_id)
+        copy = dataclasses.replace(column, id=state.next_id, name="", pinned=False)
         place = state.columns.index(column) + 1
+        # Behind all that are pinned.
+        place = max(place, sum(each.pinned for each in state.columns))
         columns = (*state.columns[:place], copy, *state.columns[place:])
         self.apply(dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), "duplicate column")
         return copy.id
@@ -318,7 +363,33 @@ class Session(QObject):
         """Put other columns in the place of all."""
         state = self.state
         made = tuple(Column(state.next_id + place, name, params) for place, (name, params) in enumerate(columns))
-        self.apply(dataclasses.replace(state, columns=made, next_id=state.next_id + len(made)), text)
+        pinned = tuple(column for column in state.columns if column.pinned)
+        self.apply(dataclasses.replace(state, columns=pinned + made, next_id=state.next_id + len(made)), text)
+
+    def rename_column(self, column_id: int, name: str) -> None:
+        """Call a column by a name of its own; an empty one leaves it to what differs from other columns."""
+        column = self.state.column(column_id)
+        if column is not None:
+            name = " ".join(name.split())[:MAX_NAME]
+            text = f"name {name}" if name else "name by what differs"
+            self.apply(self.state.with_column(dataclasses.replace(column, name=name)), text)
+
+    def pin_column(self, column_id: int, pinned: bool) -> None:
+        """Keep a column in front and when others replace all columns, or no longer."""
+        column = self.state.column(column_id)
+        if column is not None and column.pinned != pinned:
+            columns = self.state.with_column(dataclasses.replace(column, pinned=pinned)).columns
+            ordered = tuple(sorted(columns, key=lambda each: not each.pinned))
+            text = "pin column" if pinned else "unpin column"
+            self.apply(dataclasses.replace(self.state, columns=ordered), text)
+
+    def set_column_seed(self, column_id: int, seed: int | None, *, merge: object | None = None) -> None:
+        """Give a column a seed of its own, 0 .. 2147483647; None shares the session's."""
+        column = self.state.column(column_id)
+        if column is not None:
+            seed = None if seed is None else min(max(seed, 0), MAX_SEED)
+            text = "shared seed" if seed is None else f"seed {seed} of one column"
+            self.apply(self.state.with_column(dataclasses.replace(column, seed=seed)), text, merge=merge)
 
     def move_column(self, column_id: int, by: int) -> None:
         """Move a column by so many places to the right (left when negative)."""
@@ -329,4 +400,6 @@ class Session(QObject):
         old = places.index(column_id)
         new = min(max(old + by, 0), len(columns) - 1)
         columns.insert(new, columns.pop(old))
-        self.apply(dataclasses.replace(self.state, columns=tuple(columns)), "move column")
+        # The pinned ones stay in front.
+        ordered = tuple(sorted(columns, key=lambda each: not each.pinned))
+        self.apply(dataclasses.replace(self.state, columns=ordered), "move column")

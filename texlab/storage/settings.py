@@ -6,6 +6,7 @@ import json
 import logging
 from typing import TYPE_CHECKING, Any
 
+from texlab.state.session import MAX_NAME
 from texlab.storage.kept_exemplar import file_name, has_no_home
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method
 
-    # Method, parameters, further inputs and the column's own size.
-    SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, ...] | None]
+    # Method, parameters, further inputs and the column's own size; name, pin and its own seed.
+    SavedColumn = tuple[str, Params, tuple[tuple[str, Input], ...], tuple[int, ...] | None, str, bool, int | None]
 
 log = logging.getLogger(__name__)
 
@@ -130,6 +131,12 @@ def column_to_json(column: Column) -> dict[str, Any]:
         saved["inputs"] = {name: input_to_json(each) for name, each in column.inputs}
     if column.size is not None:
         saved["size"] = list(column.size)
+    if column.name:
+        saved["name"] = column.name
+    if column.pinned:
+        saved["pinned"] = True
+    if column.seed is not None:
+        saved["seed"] = column.seed
     return saved
 
 
@@ -146,7 +153,7 @@ def columns_from_json(data: Any, tell: Callable[[str], None] = log.warning) -> l
             params = method.params.from_json(each["params"])
             size = None if each.get("size") is None else check_size(tuple(each["size"]), method.dimensions)
             inputs = _inputs_from_json(each.get("inputs", {}), method, tell)
-            found.append((method.id, params, inputs, size))
+            found.append((method.id, params, inputs, size, *_labels_from_json(each)))
         except (InputError, AttributeError, KeyError, TypeError, ValueError) as error:
             log.warning("A column of the last session was left out: %s", error)
     return found
@@ -156,6 +163,13 @@ def has_kept_inputs(data: Any) -> bool:
     """Return whether a saved session names further inputs, which have to be read from files."""
     listed = data.get("columns") if isinstance(data, dict) else None
     return isinstance(listed, list) and any(isinstance(each, dict) and each.get("inputs") for each in listed)
+
+
+def _labels_from_json(each: Any) -> tuple[str, bool, int | None]:
+    name, seed = each.get("name", ""), each.get("seed")
+    if not isinstance(name, str) or len(name) > MAX_NAME:
+        raise ValueError(f"a name must be a text of at most {MAX_NAME} characters")
+    return name, each.get("pinned") is True, None if seed is None else check_seed(seed)
 
 
 def _inputs_from_json(saved: Any, method: Method, tell: Callable[[str], None]) -> tuple[tuple[str, Input], ...]:

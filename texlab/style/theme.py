@@ -172,6 +172,7 @@ def stylesheet(theme: Theme, points: float) -> str:
     QLabel[role="error"] {{ color: {theme.error}; }}
     QLabel[role="warning"] {{ color: {theme.warning}; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
+    QLabel[role="figure"] {{ font-weight: 600; font-size: {points * 1.15:.1f}pt; }}
     QDialog#command-palette {{ border: 1px solid {theme.accent}; background: {theme.window}; }}
     QListWidget, QTreeWidget, QScrollArea {{ border: none; }}
     QProgressBar {{ border: none; background: {theme.raised}; border-radius: 2px; }}

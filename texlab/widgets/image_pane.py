@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QPainter
+from PySide6.QtGui import QColor, QPainter
 
 from texlab.widgets.pane import Pane
 from texlab.widgets.plain import Label
@@ -72,12 +72,13 @@ class ImagePane(Pane):
     """Shows an (H, W, 3) uint8 picture with nearest-neighbour enlargement.
 
     ``hovered(row, column)`` gives the image pixel under the cursor (modulo the image when tiled), (-1, -1)
-    outside; ``clicked(row, column)`` likewise.
+    outside; ``clicked(row, column)`` likewise; ``double_clicked()`` wherever that is.
     """
 
     hovered = Signal(int, int)
     clicked = Signal(int, int)
     painted = Signal()
+    double_clicked = Signal()
     # The base class resizes itself while it is made.
     _picture: Picture | None = None
     _note: Label | None = None
@@ -88,7 +89,7 @@ class ImagePane(Pane):
         self._copies: list[Any] = []
         self._overlay: Any = None
         self._marks: MarksItem | None = None
-        self.view.sigResized.connect(lambda _: link.resized())
+        self.view.sigResized.connect(lambda _: self._link.resized() if self._link is not None else None)
 
     @property
     def picture(self) -> Picture | None:
@@ -123,6 +124,11 @@ class ImagePane(Pane):
         self._place_copies()
         self._choose_filter()
         self.painted.emit()
+
+    def set_surround(self, colour: str) -> None:
+        """Paint this around the picture; "" leaves what the theme says."""
+        if colour:
+            self.setBackground(QColor(colour))
 
     def set_note(self, text: str) -> None:
         """Say something in the place of the picture; nothing with an empty text."""
@@ -236,6 +242,12 @@ class ImagePane(Pane):
     def point_nowhere(self) -> None:
         """Tell that the pointer has left."""
         self.hovered.emit(-1, -1)
+
+    def mouseDoubleClickEvent(self, event: Any) -> None:
+        """Tell of it: what is around decides."""
+        event.accept()
+        if event.button() == Qt.MouseButton.LeftButton:
+            self.double_clicked.emit()
 
     def click_at(self, place: QPointF) -> None:
         """Tell which pixel was clicked."""

@@ -115,6 +115,14 @@ class Pane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
         if self._link is not None:
             self._link.leave(self)
 
+    def follow(self, link: Link[Any]) -> None:
+        """Pan and zoom with the panes of another link."""
+        if link is not self._link:
+            self.detach()
+            self._link = link
+            link.join(self)
+            link.resized()
+
     def _moved(self, *_: object) -> None:
         if self._link is not None:
             self._link.moved(self)

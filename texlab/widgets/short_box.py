@@ -18,6 +18,18 @@ class ShortBox(QComboBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._label = ""
+
+    @property
+    def label(self) -> str:
+        """What is written in the box while its list is closed."""
+        return self._label or self.currentText()
+
+    def set_label(self, label: str) -> None:
+        """Write this instead of what is chosen; "" writes what is chosen."""
+        if label != self._label:
+            self._label = label
+            self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the box with a text that fits."""
@@ -28,7 +40,7 @@ class ShortBox(QComboBox):
             QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, self
         )
         room = field.width() - 4
-        option.currentText = self.fontMetrics().elidedText(self.currentText(), Qt.TextElideMode.ElideRight, room)
+        option.currentText = self.fontMetrics().elidedText(self.label, Qt.TextElideMode.ElideRight, room)
         painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
         painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
 

@@ -38,8 +38,9 @@ class StatusLine(Label):
     The height is the same whatever is shown: pictures side by side stay at the same level.
     """
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, parent: QWidget | None = None, lines: int = LINES) -> None:
         super().__init__(parent=parent)
+        self._lines = lines
         self._parts: tuple[str, ...] = ()
         self._details: tuple[str, ...] = ()
         self.setProperty("role", "muted")
@@ -57,9 +58,16 @@ class StatusLine(Label):
             self._parts = tuple(parts)
             self._fit()
 
+    def set_lines(self, lines: int) -> None:
+        """Use this many lines."""
+        if lines != self._lines:
+            self._lines = lines
+            self.updateGeometry()
+            self._fit()
+
     def sizeHint(self) -> QSize:
         """Return the size of all lines."""
-        return QSize(0, self.fontMetrics().lineSpacing() * LINES + 2)
+        return QSize(0, self.fontMetrics().lineSpacing() * self._lines + 2)
 
     def minimumSizeHint(self) -> QSize:
         """Return the size of all lines."""

@@ -1,8 +1,10 @@
-"""How tables of numbers look and behave."""
+"""How tables of numbers look and behave; every one of them can be copied as text."""
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QAbstractItemView, QFrame, QHeaderView, QTableWidget
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QAbstractItemView, QApplication, QFrame, QHeaderView, QTableWidget
 
 
 def make_quiet(table: QTableWidget) -> None:
@@ -14,3 +16,39 @@ def make_quiet(table: QTableWidget) -> None:
     table.setTabKeyNavigation(False)
     table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
     table.horizontalHeader().setHighlightSections(False)
+    make_copyable(table)
+
+
+def make_copyable(table: QTableWidget) -> None:
+    """Let the table be copied as text, by its context menu and, while it has the keyboard, by its key."""
+    action = QAction("Copy table as text", table)
+    action.setObjectName("copy-table")
+    action.setShortcut(QKeySequence.StandardKey.Copy)
+    action.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+    action.triggered.connect(lambda: QApplication.clipboard().setText(table_text(table)))
+    table.addAction(action)
+    table.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+
+
+def table_text(table: QTableWidget) -> str:
+    """Return the cells that are seen with their heads: tabs between columns, a line for each row.
+
+    Where cells are selected (more than one), only their rows are taken.
+    """
+    columns = [place for place in range(table.columnCount()) if not table.isColumnHidden(place)]
+    rows = [place for place in range(table.rowCount()) if not table.isRowHidden(place)]
+    selected = {index.row() for index in table.selectedIndexes()}
+    if len(selected) > 1:
+        rows = [row for row in rows if row in selected]
+    named = not table.verticalHeader().isHidden()
+    heads = [_text(table.horizontalHeaderItem(column)) for column in columns]
+    lines = [["", *heads] if named else heads]
+    for row in rows:
+        cells = [_text(table.item(row, column)) for column in columns]
+        lines.append([_text(table.verticalHeaderItem(row)), *cells] if named else cells)
+    return "\n".join("\t".join(line) for line in lines) + "\n"
+
+
+def _text(item: object) -> str:
+    text = getattr(item, "text", None)
+    return " ".join(str(text()).split()) if callable(text) else ""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QPointF, QRectF
 
 from texlab.widgets.pane import Link
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 # What is thinner on the screen, in pixels, is enlarged to this, or to its own size.
 LEAST = 8
@@ -57,6 +60,21 @@ class ViewLink(Link[Linked]):
         self._thinnest = 0
         self._centre = QPointF()
         self._scale: float | None = None
+        self.rescaled: Callable[[], None] = lambda: None
+        """Called after the panes show another place or scale."""
+
+    @property
+    def percent(self) -> float | None:
+        """Pixels of the screen per hundred of the picture; None without a pane."""
+        if not self._panes:
+            return None
+        first = self._panes[0]
+        return 100 * first.shown_scale * first.devicePixelRatioF()
+
+    def set_percent(self, percent: float) -> None:
+        """Show this many pixels of the screen per hundred of the picture, around the present centre."""
+        if self._panes:
+            self._rescale(percent / 100 / self._panes[0].devicePixelRatioF())
 
     def moved(self, source: Linked) -> None:
         """Show in all panes what the user made one show."""
@@ -64,6 +82,7 @@ class ViewLink(Link[Linked]):
         for pane in self._panes:
             if pane is not source:
                 pane.show_around(self._centre, self._scale)
+        self.rescaled()
 
     def set_extent(self, height: int, width: int, thinnest: int = 0) -> None:
         """Say how large the largest picture is or will be (a draft may be smaller for a moment).
@@ -82,6 +101,7 @@ class ViewLink(Link[Linked]):
             return
         for pane in self._panes:
             pane.show_around(self._centre, self._scale)
+        self.rescaled()
 
     def fit(self) -> None:
         """Show the largest picture whole, and the others at the same scale."""
@@ -92,6 +112,7 @@ class ViewLink(Link[Linked]):
             pane.show_rect(rectangle)
             if pane.shown_scale * self._thinnest < min(LEAST, self._thinnest):
                 self._show_corner(pane, rectangle, min(1.0, LEAST / self._thinnest))
+        self.rescaled()
 
     @staticmethod
     def _show_corner(pane: Linked, rectangle: QRectF, scale: float) -> None:

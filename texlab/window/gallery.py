@@ -83,6 +83,10 @@ class GalleryView(QWidget):
             groups[group].addChild(item)
             self._items[name] = item
 
+    def textures(self) -> list[tuple[str, str, str]]:
+        """Return name, title and the words to find it by of every texture."""
+        return [(name, item.text(0), str(item.data(0, _WORDS))) for name, item in self._items.items()]
+
     def set_thumbnail(self, name: str, picture: Picture) -> None:
         """Show the small picture of a texture, (h, w, 3) uint8."""
         self.thumbnails += 1

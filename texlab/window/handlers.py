@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QPoint, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
+from texlab.columns.history_popup import HistoryPopup
+from texlab.widgets.name_field import NameField
 from texlab.widgets.plain import set_tip
 from texlab.window.batch_desk import BatchDesk
 from texlab.window.export_desk import ExportDesk
@@ -30,8 +32,11 @@ if TYPE_CHECKING:
     from texlab.window.help_desk import HelpDesk
     from texlab.window.main_window import MainWindow
     from texlab.window.opener import Opener
+    from texlab.window.tuning import Tuning
 
 TURN_MS = 600
+# Their handlers take whether they are on.
+SWITCHES = ("tile", "link")
 
 
 class Handlers(QObject):
@@ -45,6 +50,7 @@ class Handlers(QObject):
         opener: Opener,
         exchange: Exchange,
         desk: HelpDesk,
+        tuning: Tuning,
     ) -> None:
         super().__init__(window)
         self._window = window
@@ -54,6 +60,7 @@ class Handlers(QObject):
         self._opener = opener
         self._exchange = exchange
         self._desk = desk
+        self._tuning = tuning
         self.batches = BatchDesk(window, controller.session)
         self.exports = ExportDesk(window, exchange.settings, controller)
         self.projects = ProjectDesk(window, exchange.settings, controller)
@@ -83,6 +90,12 @@ class Handlers(QObject):
             "export": exchange.export,
             "copy": exchange.copy,
             "use": self._use,
+            "enlarge": self._workspace.enlarge,
+            "rename": self.ask_name,
+            "history": self._show_history,
+            "pin": self._pin,
+            "own-seed": self._lock_seed,
+            "new-seed": lambda column_id: session.set_column_seed(column_id, _any_seed()),
             "remove": session.remove_column,
             "run": controller.run_column,
             "stop": controller.stop_column,
@@ -90,7 +103,7 @@ class Handlers(QObject):
         }
 
     def _by_action(self) -> dict[str, Any]:
-        session, controller, link = self._session, self._controller, self._workspace.link
+        session, controller, stage = self._session, self._controller, self._workspace
         exchange, desk = self._exchange, self._desk
         handlers: dict[str, Any] = {
             "open": exchange.ask_open,
@@ -102,7 +115,7 @@ class Handlers(QObject):
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,
-            "dice": lambda: session.set_seed(secrets.randbelow(MAX_SEED + 1)),
+            "dice": lambda: session.set_seed(_any_seed()),
             "palette": desk.show_palette,
             "add": self.choose_new_column,
             "four": lambda: self.lay_out(FIRST_SIGHT, "the four methods"),
@@ -111,11 +124,13 @@ class Handlers(QObject):
             "next": lambda: self._step_column(1),
             "run-all": controller.run_all,
             "stop-all": controller.stop_all,
-            "fit": link.fit,
-            "actual": link.actual_size,
-            "zoom-in": lambda: link.zoom(1.5),
-            "zoom-out": lambda: link.zoom(1 / 1.5),
-            "tile": self._workspace.set_tiled,
+            "fit": stage.fit,
+            "actual": stage.actual_size,
+            "zoom-in": lambda: stage.zoom(1.5),
+            "zoom-out": lambda: stage.zoom(1 / 1.5),
+            "tile": stage.set_tiled,
+            "link": stage.set_linked,
+            "panels": self._window.strip.toggle,
             "crop": lambda: self._workspace.exemplar.crop_button.click(),
             "help": lambda: desk.show_help(self._chosen_method()),
             "help-window": lambda: desk.show_help("window"),
@@ -127,14 +142,15 @@ class Handlers(QObject):
             handlers[name] = lambda name=name: self.column_command(session.selected_id, name)
         for layout in LAYOUTS:
             handlers[f"layout-{layout}"] = partial(self._arrange, layout)
-        return {name: _without_argument(call) if name != "tile" else call for name, call in handlers.items()}
+        return {name: call if name in SWITCHES else _without_argument(call) for name, call in handlers.items()}
 
     def _arrange(self, layout: str) -> None:
         column = self._session.selected_column
         fields = describe(type(column.params)) if column is not None else ()
         table = any(field.type is ThresholdTable for field in fields)
+        self._tuning.set_active(layout == "tune")
         self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
-        self._workspace.link.fit()
+        self._workspace.fit()
 
     def turn(self, what: str, change: Any) -> None:
         """Make ``change(merge=what)``: turns of a number box without a pause are one step of the history."""
@@ -152,6 +168,37 @@ class Handlers(QObject):
     def column_command(self, column_id: int, name: str) -> None:
         """Do a command of ``COLUMN_COMMANDS`` to a column."""
         self._to_column[name](column_id)
+
+    def ask_name(self, column_id: int) -> None:
+        """Let a name for a column be typed over its title."""
+        view = self._workspace.columns.get(column_id)
+        column = self._session.state.column(column_id)
+        if view is None or column is None or view.isHidden():
+            return
+        field = NameField(view.method_box, column.name)
+        field.taken.connect(partial(self._session.rename_column, column_id))
+
+    def _show_history(self, column_id: int) -> None:
+        view = self._workspace.columns.get(column_id)
+        if view is None or view.scene is None or view.isHidden():
+            return
+        exemplar = self._controller.exemplar
+        session = self._session
+        popup = HistoryPopup(view.scene, exemplar.sha256 if exemplar is not None else "", view)
+        popup.chosen.connect(partial(session.take_past, column_id))
+        popup.compared.connect(lambda past: self.select(session.compare_past(column_id, past)))
+        popup.show_at(view.pane)
+
+    def _pin(self, column_id: int) -> None:
+        column = self._session.state.column(column_id)
+        if column is not None:
+            self._session.pin_column(column_id, not column.pinned)
+
+    def _lock_seed(self, column_id: int) -> None:
+        column = self._session.state.column(column_id)
+        if column is not None:
+            seed = self._session.state.seed if column.seed is None else None
+            self._session.set_column_seed(column_id, seed)
 
     def _use(self, column_id: int) -> None:
         scene = self._controller.column_scene(column_id)
@@ -211,6 +258,10 @@ class Handlers(QObject):
     def _chosen_method(self) -> str:
         column = self._session.selected_column
         return column.method if column is not None else "index"
+
+
+def _any_seed() -> int:
+    return secrets.randbelow(MAX_SEED + 1)
 
 
 def _without_argument(call: Any) -> Any:

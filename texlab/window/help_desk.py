@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint
 
 from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
-from texlab.window.palette import CommandPalette
+from texlab.window.palette import CommandPalette, Entry, of_actions
+from texlab_core.engine.params import describe
 from texlab_core.engine.run import versions
 
 if TYPE_CHECKING:
@@ -47,9 +49,28 @@ class HelpDesk:
 
     def show_palette(self) -> None:
         """Open the command palette."""
-        palette = CommandPalette(self._window.actions_by_name.values(), self._window)
+        palette = CommandPalette(self._entries(), self._window)
         palette.move(self._window.mapToGlobal(QPoint((self._window.width() - palette.width()) // 2, 80)))
         palette.show()
+
+    def _entries(self) -> list[Entry]:
+        """Return what the palette finds: commands and panels, parameters, presets, textures."""
+        window, column = self._window, self._session.selected_column
+        found = of_actions(window.actions_by_name.values())
+        if column is not None:
+            for field in describe(type(column.params)):
+                run = partial(self._show_knob, column.method, field.name)
+                found.append(Entry("parameter", field.label, field.knob.help, run))
+        bar = window.parameters.presets
+        found += [
+            Entry("preset", preset.name, preset.note, partial(bar.chosen.emit, preset)) for preset in bar.presets
+        ]
+        gallery = window.gallery
+        found += [
+            Entry("texture", title, words, partial(gallery.chosen.emit, name))
+            for name, title, words in gallery.textures()
+        ]
+        return found
 
     def close(self) -> None:
         """Close the help window."""

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
 from texlab.style.theme import set_text_size
+from texlab.window.panel_strip import LOW
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,12 +17,13 @@ if TYPE_CHECKING:
 
     from texlab.storage.settings import Settings
     from texlab.style.theme import ThemeSource
+    from texlab.window.panel_strip import PanelStrip
 
 TEACH_FACTOR = 1.35
 # What is in front, and the share of the height and the width of the parameters in pixels.
 FRONT = {"explore": "pyramid", "teach": "pyramid"}
 HEIGHTS = {"explore": 0.33, "teach": 0.45, "tune": 0.3}
-WIDTHS = {"explore": 270, "teach": 270, "tune": 420}
+WIDTHS = {"explore": 250, "teach": 270, "tune": 380}
 SIDES = {"gallery": Qt.DockWidgetArea.LeftDockWidgetArea, "parameters": Qt.DockWidgetArea.RightDockWidgetArea}
 
 
@@ -29,8 +31,14 @@ class Layouts:
     """Arranges the panels of a window, by name; ``settings`` remember how."""
 
     def __init__(
-        self, window: QMainWindow, docks: Mapping[str, QDockWidget], settings: Settings, themes: ThemeSource
+        self,
+        window: QMainWindow,
+        docks: Mapping[str, QDockWidget],
+        settings: Settings,
+        themes: ThemeSource,
+        strip: PanelStrip,
     ) -> None:
+        self._strip = strip
         self._window = window
         self._docks = docks
         self._settings = settings
@@ -47,10 +55,13 @@ class Layouts:
         self.set_text_size(layout)
         for dock in tabs:
             dock.show()
+        # Where pictures and panels have no room side by side, exploring is about the pictures.
+        self._strip.set_open(layout != "explore" or window.height() >= LOW)
         if tabs:
             docks.get(FRONT.get(layout, tuning), tabs[0]).raise_()
             height = round(window.height() * HEIGHTS[layout])
-            window.resizeDocks([tabs[0]], [height], Qt.Orientation.Vertical)
+            if self._strip.is_open:
+                window.resizeDocks([tabs[0]], [height], Qt.Orientation.Vertical)
         window.resizeDocks([docks["parameters"]], [WIDTHS[layout]], Qt.Orientation.Horizontal)
         self._settings.values["layout"] = layout
 

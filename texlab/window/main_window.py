@@ -25,8 +25,9 @@ from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
-from texlab.window.layouts import Layouts
+from texlab.window.layouts import SIDES, Layouts
 from texlab.window.message_bar import MessageBar
+from texlab.window.panel_strip import PanelStrip
 from texlab.window.screen_fit import first_window, panel_sizes, within
 from texlab.window.stops import FocusRing, next_stop
 from texlab.window.toolbar import ToolBar
@@ -55,6 +56,9 @@ ERRANDS = {
     "fill": "filling",
 }
 
+# Commands that need a chosen column, besides those of the tool bar.
+OF_ONE = ("enlarge", "rename", "history", "pin", "own-seed", "new-seed")
+
 
 class MainWindow(QMainWindow):
     """Menus, tool bar, gallery, parameters, docks and status bar.
@@ -77,14 +81,14 @@ class MainWindow(QMainWindow):
         self.themes = themes
         self.actions_by_name = make_actions(self)
         self.docks: dict[str, QDockWidget] = {}
-        self.layouts = Layouts(self, self.docks, settings, themes)
-        self.message_bar = MessageBar()
+        self.strip = PanelStrip(self, self.docks, settings)
+        self.layouts = Layouts(self, self.docks, settings, themes, self.strip)
         self._middle = QWidget()
+        self.message_bar = MessageBar(self._middle)
         self._middle.setObjectName("middle")
         self._middle_layout = QVBoxLayout(self._middle)
         self._middle_layout.setContentsMargins(0, 0, 0, 0)
         self._middle_layout.setSpacing(0)
-        self._middle_layout.addWidget(self.message_bar)
         self._loading = Label("")
         self._loading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._middle_layout.addWidget(self._loading, 1)
@@ -122,10 +126,11 @@ class MainWindow(QMainWindow):
         self.docks[title.lower()] = dock
 
     def set_workspace(self, workspace: QWidget) -> None:
-        """Put the images into the middle."""
+        """Put the images into the middle, and their zoom into the status bar."""
         self._middle_layout.replaceWidget(self._loading, workspace)
         self._loading.deleteLater()
         self._middle_layout.setStretchFactor(workspace, 1)
+        self.message_bar.raise_()
 
     def add_docks(self, docks: list[Dock]) -> None:
         """Put the docks, as tabs, below the images."""
@@ -153,6 +158,9 @@ class MainWindow(QMainWindow):
         state = self.settings.text("state")
         if not (state and self.restoreState(QByteArray(base64.b64decode(state)))) and first is not None:
             first.raise_()
+        for dock in self.docks.values():
+            dock.topLevelChanged.connect(self.strip.refresh)
+        self.strip.start()
 
     def _make_menus(self) -> None:
         self.menus: dict[str, QMenu] = {}
@@ -233,8 +241,11 @@ class MainWindow(QMainWindow):
             action.setText(f"&{label} {text}" if text else f"&{label}")
             action.setIconText("↶" if name == "undo" else "↷")
         alone = session.selected_column is not None
-        for name in ("duplicate", "remove", "left", "right", "previous", "next", "reset", "run"):
+        for name in ("duplicate", "remove", "left", "right", "previous", "next", "reset", "run", *OF_ONE):
             self.actions_by_name[name].setEnabled(alone)
+        column = session.selected_column
+        self.actions_by_name["pin"].setChecked(column is not None and column.pinned)
+        self.actions_by_name["own-seed"].setChecked(column is not None and column.seed is not None)
 
     def show_errands(self, names: Sequence[str]) -> None:
         """Show that something is being opened, copied or saved."""
@@ -251,10 +262,23 @@ class MainWindow(QMainWindow):
             action.triggered.connect(partial(chosen, path))
             self.recent_menu.addAction(action)
 
+    def add_below(self, bar: QWidget) -> None:
+        """Put a bar below the images."""
+        self._middle_layout.addWidget(bar)
+
+    def add_zoom(self, label: str, box: QWidget) -> None:
+        """Put a box with a word before it into the status bar."""
+        word = Label(label)
+        word.setProperty("role", "muted")
+        self.statusBar().insertPermanentWidget(1, word)
+        self.statusBar().insertPermanentWidget(2, box)
+
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""
         dock = self.docks.get(name)
         if dock is not None:
+            if name not in SIDES:
+                self.strip.set_open(True)
             dock.show()
             dock.raise_()
             dock.widget().setFocus()
@@ -294,6 +318,7 @@ class MainWindow(QMainWindow):
                 tabs.setElideMode(Qt.TextElideMode.ElideNone)
                 tabs.setUsesScrollButtons(True)
                 tabs.setAccessibleName("Panels")
+                self.strip.watch(tabs)
         return super().event(event)
 
     def tab_order(self) -> list[QWidget]:

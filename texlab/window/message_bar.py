@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QToolButton, QWidget
 
 from texlab.widgets.plain import Label
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from texlab.style.theme import Theme
 
 NEWS_MS = 6000
+MARGIN = 6
 
 
 class MessageBar(QFrame):
@@ -41,11 +42,15 @@ class MessageBar(QFrame):
         self._timer.timeout.connect(self.hide)
         self._kind: Literal["problem", "news"] = "news"
         self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
+        self._ground = "#e9e9e6"
         self.hide()
+        if parent is not None:
+            parent.installEventFilter(self)
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
         self._colours = {"problem": theme.error, "news": theme.accent}
+        self._ground = theme.raised
         self._paint()
 
     def tell(self, sentence: str, kind: Literal["problem", "news"]) -> None:
@@ -53,7 +58,9 @@ class MessageBar(QFrame):
         self._kind = kind
         self._paint()
         self.label.setText(sentence)
+        self._lie()
         self.show()
+        self.raise_()
         if kind == "news":
             self._timer.start()
         else:
@@ -61,7 +68,24 @@ class MessageBar(QFrame):
 
     def _paint(self) -> None:
         colour = self._colours[self._kind]
-        self.setStyleSheet(f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; }}")
+        self.setStyleSheet(
+            f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; background: {self._ground}; }}"
+        )
+
+    def _lie(self) -> None:
+        """Lie over the upper edge of what is below: nothing there has to move."""
+        below = self.parentWidget()
+        if below is not None:
+            width = below.width() - 2 * MARGIN
+            layout = self.layout()
+            height = layout.heightForWidth(width) if layout is not None and layout.hasHeightForWidth() else -1
+            self.setGeometry(MARGIN, MARGIN, width, max(height, self.sizeHint().height()))
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Follow the size of what is below."""
+        if event.type() == QEvent.Type.Resize and watched is self.parentWidget():
+            self._lie()
+        return super().eventFilter(watched, event)
 
     def hideEvent(self, event: object) -> None:
         """Stop the clock."""

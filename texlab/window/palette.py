@@ -1,7 +1,8 @@
-"""The command palette: type a few letters, press Enter."""
+"""The palette: type a few letters, press Enter; it finds commands, panels, textures, presets and parameters."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
@@ -10,24 +11,81 @@ from PySide6.QtWidgets import QDialog, QLineEdit, QListWidget, QListWidgetItem, 
 
 from texlab.widgets.plain import set_tip
 from texlab.window.commands import plain
+from texlab.window.fuzzy import fit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from PySide6.QtGui import QAction
 
+# More than this nobody reads; another letter narrows it down.
+MOST = 60
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Something that can be found.
+
+    Parameters
+    ----------
+    kind
+        "" for commands; else what it is ("texture").
+    name, help, keys
+        Its name, explanation, and the keys that do the same.
+    run
+        Does it.
+    """
+
+    kind: str
+    name: str
+    help: str
+    run: Callable[[], object]
+    keys: str = ""
+
+    @property
+    def text(self) -> str:
+        """What the list shows."""
+        name = f"{self.name}  ({self.kind})" if self.kind else self.name
+        return f"{name}    {self.keys}" if self.keys else name
+
+
+def best_first(entries: Iterable[Entry], typed: str) -> list[Entry]:
+    """Return the entries that fit what was typed, the best first; commands go before what fits as well."""
+    found = []
+    for place, entry in enumerate(entries):
+        value = fit(typed, entry.name, f"{entry.kind} {entry.help}")
+        if value is not None:
+            found.append((-value, bool(entry.kind), place, entry))
+    return [entry for *_, entry in sorted(found, key=lambda each: each[:3])]
+
+
+def of_actions(actions: Iterable[QAction]) -> list[Entry]:
+    """Return the enabled commands."""
+    return [
+        Entry(
+            "",
+            plain(action.text()),
+            action.statusTip(),
+            action.trigger,
+            action.shortcut().toString(QKeySequence.SequenceFormat.NativeText),
+        )
+        for action in actions
+        if action.isEnabled() and action.text()
+    ]
+
 
 class CommandPalette(QDialog):
-    """Lists the enabled commands that contain every word typed."""
+    """Lists what fits the words typed, the best first."""
 
-    def __init__(self, actions: Iterable[QAction], parent: QWidget | None = None) -> None:
+    def __init__(self, entries: Sequence[Entry], parent: QWidget | None = None) -> None:
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("command-palette")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._actions = [action for action in actions if action.isEnabled() and action.text()]
+        self._entries = entries
+        self._shown: list[Entry] = []
         self.field = QLineEdit()
         self.field.setObjectName("palette-field")
-        self.field.setPlaceholderText("Type a command")
+        self.field.setPlaceholderText("Type a command, panel, texture, preset or parameter")
         self.field.setAccessibleName("Command")
         self.list = QListWidget()
         self.list.setObjectName("palette-list")
@@ -56,26 +114,24 @@ class CommandPalette(QDialog):
         return super().eventFilter(watched, event)
 
     def _fill(self, text: str) -> None:
-        words = text.lower().split()
+        self._shown = best_first(self._entries, text)[: MOST if text.strip() else None]
         self.list.clear()
-        for action in self._actions:
-            name = plain(action.text())
-            if all(word in f"{name} {action.statusTip()}".lower() for word in words):
-                keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-                item = QListWidgetItem(f"{name}    {keys}" if keys else name)
-                set_tip(item, action.statusTip())
-                item.setData(Qt.ItemDataRole.UserRole, action)
-                self.list.addItem(item)
+        for place, entry in enumerate(self._shown):
+            item = QListWidgetItem(entry.text)
+            set_tip(item, entry.help)
+            item.setData(Qt.ItemDataRole.UserRole, place)
+            self.list.addItem(item)
         if self.list.count():
             self.list.setCurrentRow(0)
         else:
-            nothing = QListWidgetItem(f"No command has \u201c{text.strip()}\u201d in its name or explanation.")
+            nothing = QListWidgetItem(f"Nothing has \u201c{text.strip()}\u201d in its name or explanation.")
             nothing.setFlags(Qt.ItemFlag.NoItemFlags)
             self.list.addItem(nothing)
 
     def _run(self, item: QListWidgetItem) -> None:
-        action: QAction | None = item.data(Qt.ItemDataRole.UserRole)
-        if action is None:
+        place = item.data(Qt.ItemDataRole.UserRole)
+        if place is None:
             return
+        entry = self._shown[place]
         self.close()
-        action.trigger()
+        entry.run()

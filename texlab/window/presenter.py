@@ -74,9 +74,7 @@ class Presenter(QObject):
 
     def show_scene(self, scene: Scene) -> None:
         """Show the columns and everything about them."""
-        sizes = self._session.state.size, self._source_size()
-        height, width = (max(sides) for sides in zip(*sizes, strict=True))
-        self._workspace.link.set_extent(height, width, min(map(min, sizes)))
+        self._workspace.set_extents(self._session.state.size, self._source_size())
         self._workspace.show_scene(scene)
         self._window.parameters.show_scene(scene.selected)
         self._overlays.show_scene(scene)

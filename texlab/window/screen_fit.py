@@ -33,7 +33,7 @@ def within(window: Rect, available: Rect) -> Rect:
 
 def panel_sizes(width: int, height: int) -> tuple[int, int, int]:
     """Return the widths of gallery and parameters and the height of the docks in a window of this size."""
-    gallery = min(max(round(0.15 * width), 150), 320, round(0.28 * width))
-    parameters = min(max(round(0.21 * width), 190), 480, round(0.36 * width))
+    gallery = min(max(round(0.11 * width), 150), 320, round(0.28 * width))
+    parameters = min(max(round(0.16 * width), 240), 480, round(0.36 * width))
     docks = min(max(round(0.33 * height), 120), 760)
     return gallery, parameters, docks

@@ -1,0 +1,70 @@
+"""Cells of equal size in as many rows as the arrangement says."""
+
+from __future__ import annotations
+
+from functools import reduce
+from itertools import pairwise
+from typing import TYPE_CHECKING, get_args
+
+from PySide6.QtWidgets import QWidget
+
+from texlab.columns.arrangement import Arrangement, Frame, Rows, Words, arrange
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtCore import QPoint
+
+    from texlab.columns.column import ColumnView
+    from texlab.columns.exemplar import ExemplarView
+
+WORDS: tuple[Words, ...] = get_args(Words)
+
+
+class Grid(QWidget):
+    """Places its cells; the ones that are not shown are hidden."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("grid")
+        self.arrangement: Arrangement | None = None
+        self._cells: tuple[ExemplarView | ColumnView, ...] = ()
+        self.rows: Rows = "largest"
+        self.aspect = 1.0
+
+    @property
+    def cells(self) -> tuple[ExemplarView | ColumnView, ...]:
+        """What is shown, row by row."""
+        return self._cells
+
+    def show_cells(self, cells: Sequence[ExemplarView | ColumnView]) -> None:
+        """Show these cells in this order, and hide what else there is."""
+        for gone in self._cells:
+            if gone not in cells and gone.parentWidget() is self:
+                gone.hide()
+        self._cells = tuple(cells)
+        for cell in cells:
+            if cell.parentWidget() is not self:
+                cell.setParent(self)
+            cell.show()
+        # Tab walks through the columns as they stand.
+        for before, after in pairwise(cells):
+            QWidget.setTabOrder(before, after)
+
+    def place(self, room: tuple[int, int]) -> None:
+        """Give every cell its place in a room of this width and height."""
+        if not self._cells:
+            return
+        frames = {words: reduce(Frame.joined, (cell.frame_of(words) for cell in self._cells)) for words in WORDS}
+        made = arrange(len(self._cells), room, frames, self.aspect, self.rows)
+        self.arrangement = made
+        self.setMinimumSize(*made.total)
+        for place, cell in enumerate(self._cells):
+            cell.set_words(made.words)
+            cell.setGeometry(*made.cell(place))
+
+    def place_at(self, point: QPoint) -> int:
+        """Return the place of the cell nearest to a point of the grid."""
+        if self.arrangement is None:
+            return 0
+        return self.arrangement.place_at(point.x(), point.y(), len(self._cells))
