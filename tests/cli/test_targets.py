@@ -30,6 +30,8 @@ WRITERS = {
     "encode": (["encode", EXEMPLAR, "--out"], ".msg.json"),
     "solid": (["solid", "missing.tif", "--out"], ".png"),
     "screenshot": (["screenshot", "--out"], ".png"),
+    "failures": (["failures", "coral", "--out"], ".png"),
+    "tune": (["tune", EXEMPLAR, "--out"], ".json"),
 }
 READERS = {
     "synth": ["synth", "", "--method", "tiling", "--out", "a.png"],
@@ -39,6 +41,7 @@ READERS = {
     "sweep": ["sweep", "", "--method", "tiling", "--vary", "seed=1:2:2", "--out", "a.png"],
     "export": ["export", "", "--out", "a.png"],
     "encode": ["encode", "", "--out", "a.msg.json"],
+    "tune": ["tune", "", "--out", "a.json"],
 }
 
 

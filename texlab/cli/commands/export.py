@@ -25,7 +25,6 @@ from texlab.cli.commands._sources import (
 )
 from texlab.cli.terminal import interrupted, logged_quietly
 from texlab_core.errors import InputError, ParamError
-from texlab_core.images.formats.writing import WRITABLE_SUFFIXES
 
 if TYPE_CHECKING:
     import argparse
@@ -209,6 +208,8 @@ def _files(args: argparse.Namespace, items: Sequence[Item]) -> tuple[Sequence[Pa
 
 def _is_file(text: str) -> bool:
     """Return whether a name asks for one file: it has an ending, and is no folder with a dot in its name."""
+    from texlab_core.images.formats.writing import WRITABLE_SUFFIXES
+
     path = Path(text)
     if text.endswith(("/", "\\")) or not path.suffix:
         return False
