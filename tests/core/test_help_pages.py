@@ -14,6 +14,7 @@ from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
 from texlab_core.figures import encode, figures
 from texlab_core.files.resources import resource
+from texlab_core.lessons.shelf import bundled
 
 PAGES = {
     entry.name[:-3]: entry.read_text(encoding="utf-8")
@@ -35,6 +36,8 @@ def test_every_link_leads_somewhere(page):
         if target.startswith("knob:"):
             method, knob = target[5:].split("/")
             assert knob in {each.name for each in describe(methods()[method].params)}, target
+        elif target.startswith("lesson:"):
+            assert target[7:] in bundled(), target
         else:
             assert target.endswith(".md")
             assert target[:-3] in PAGES, target

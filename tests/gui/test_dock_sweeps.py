@@ -56,7 +56,12 @@ class Bench:
         self.dock = SweepsDock()
         self.host = DockHost(self.dock, Slots(1))
         self.carrier = Carrier(
-            self.controller, self.session.select, lambda source: None, lambda marks: None, lambda dock, how: None
+            self.controller,
+            self.session.select,
+            lambda source: None,
+            lambda marks: None,
+            lambda dock, how: None,
+            print,
         )
         self.dock.intention.connect(self.carrier.carry_out)
         self.controller.scene_changed.connect(self.host.show_scene)

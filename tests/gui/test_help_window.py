@@ -8,7 +8,7 @@ from PySide6.QtGui import QTextDocument
 
 from texlab.docks import dock_classes
 from texlab.window.commands import COMMANDS
-from texlab.window.help_window import HelpWindow, help_pages
+from texlab.window.help_window import ORDER, HelpWindow, help_pages
 from texlab_core.files.resources import resource
 
 
@@ -60,6 +60,17 @@ def test_links_lead_to_pages_and_to_knobs(window, qtbot):
     with qtbot.waitSignal(window.knob_wanted) as wanted:
         window.browser.anchorClicked.emit(QUrl("knob:de-bonet/alpha"))
     assert wanted.args == ["de-bonet", "alpha"]
+
+
+def test_links_to_lessons_open_them(window, qtbot):
+    with qtbot.waitSignal(window.lesson_wanted) as wanted:
+        window.browser.anchorClicked.emit(QUrl("lesson:heeger-bergen"))
+    assert wanted.args == ["heeger-bergen"]
+
+
+def test_every_page_has_a_place_in_the_list():
+    names = [name for name, _ in help_pages()]
+    assert names == [name for name in ORDER if name in names]
 
 
 def test_all_keys_of_the_window_are_listed():

@@ -69,10 +69,16 @@ class Bench:
         self.controller: Any = Recorder(self.session)
         self.chosen: list[int] = []
         self.opened: list[str] = []
+        self.taught: list[Any] = []
         self.marks: list[Any] = []
         self.taken: list[tuple[str, str]] = []
         self.carrier = Carrier(
-            self.controller, self.chosen.append, self.opened.append, self.marks.append, self.take
+            self.controller,
+            self.chosen.append,
+            self.opened.append,
+            self.marks.append,
+            self.take,
+            self.taught.append,
         )
 
     def take(self, dock: str, how: str) -> None:

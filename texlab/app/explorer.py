@@ -19,8 +19,10 @@ from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
 from texlab.state.changes import as_a_whole, at_full_size
+from texlab.state.intentions import OpenLesson
 from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
+from texlab.storage.paths import config_dir
 from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.settings import columns_from_json, has_kept_inputs, seed_and_size
@@ -33,6 +35,7 @@ from texlab.window.opener import Opener
 from texlab.window.presenter import Presenter
 from texlab.window.stage_settings import StageSettings
 from texlab.window.tab_pictures import TabPictures
+from texlab.window.teacher import Teacher
 from texlab.window.tuning import Tuning
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import failures, methods
@@ -95,8 +98,22 @@ class Explorer(QObject):
         self.presenter = Presenter(
             window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
         )
+        self.teacher = Teacher(
+            window,
+            self.workspace,
+            self.controller,
+            self.presenter,
+            self.autosave,
+            self.docks,
+            config_dir() / "lessons",
+        )
         self.carrier = Carrier(
-            self.controller, self.handlers.select, self.opener.open, self.presenter.show_marks, self.tabs.take
+            self.controller,
+            self.handlers.select,
+            self.opener.open,
+            self.presenter.show_marks,
+            self.tabs.take,
+            self.teacher.carry_out,
         )
         self._closed = False
         self._memory = QTimer(self)
@@ -173,6 +190,7 @@ class Explorer(QObject):
         # Nobody has to watch the threads come to their end.
         self.window.hide()
         self.controller.leave()
+        self.teacher.leave_threads()
         for host in self.hosts:
             host.leave()
         self.autosave.close()
@@ -181,6 +199,7 @@ class Explorer(QObject):
         self.thumbnails.close()
         self.tuning.close()
         self.overlays.close()
+        self.teacher.close()
         self.controller.close()
         self.crash.remove()
         self.desk.close()
@@ -241,6 +260,7 @@ class Explorer(QObject):
         parameters.edited.connect(controller.edit_params)
         parameters.reset_wanted.connect(controller.reset_params)
         parameters.help_wanted.connect(self.desk.show_help)
+        self.desk.lesson_wanted.connect(lambda name: self.teacher.carry_out(OpenLesson(name)))
         parameters.dock_wanted.connect(window.raise_dock)
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QToolTip, QWidget
 
+from texlab.widgets.control_settings import control_settings, take_control_settings
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab.state.scene import Scene
     from texlab.style.theme import Theme
@@ -68,6 +70,14 @@ class Dock(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
+
+    def settings(self) -> dict[str, bool | int | float | str]:
+        """Return how the controls stand, by name; :meth:`take_settings` takes it back."""
+        return control_settings(self, f"{self.name}-")
+
+    def take_settings(self, wanted: Mapping[str, Any]) -> tuple[str, ...]:
+        """Set controls by name, as a user would; return one clause for each that cannot be set."""
+        return take_control_settings(self, f"{self.name}-", wanted)
 
     def set_seen(self, seen: bool) -> None:
         """Take note of whether any part of the dock can be seen; a tab behind another one cannot."""

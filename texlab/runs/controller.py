@@ -20,6 +20,7 @@ from texlab.runs.tuning_runner import TuningRunner
 from texlab.runs.worker import Request, Worker
 from texlab.state.changes import rescaled
 from texlab.state.difference import difference
+from texlab.state.lessons import NO_LESSON
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.estimate import estimate_of, in_words, is_large
@@ -30,6 +31,7 @@ from texlab_core.warming import Need, Warmth, every_need
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from texlab.state.lessons import LessonScene
     from texlab.state.scene import Frame
     from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan
@@ -66,6 +68,7 @@ class Controller(QObject):
         self._ask_first = False
         self._probe: Probe | None = None
         self._stage: tuple[int, Frame] | None = None
+        self._lesson = NO_LESSON
         self._preparation = Preparation(self)
         self._preparation.ready.connect(self._exemplar_prepared)
         self._preparation.failed.connect(self._exemplar_failed)
@@ -116,6 +119,7 @@ class Controller(QObject):
             self._tuning.scene,
             self._points.points,
             self._stage_of(self.session.selected_id),
+            self._lesson,
         )
 
     def _stage_of(self, column_id: int) -> Frame | None:
@@ -129,6 +133,11 @@ class Controller(QObject):
         """Return what one column shows."""
         runner = self._runners.get(column_id)
         return runner.scene if runner is not None else None
+
+    @property
+    def shared(self) -> Shared:
+        """What everything that computes shares: analyses, what is loaded, finished results."""
+        return self._shared
 
     @property
     def slots(self) -> Slots:
@@ -145,6 +154,11 @@ class Controller(QObject):
         """Whether any column waits or runs, or the exemplar is being prepared."""
         running = any(runner.busy for runner in self._runners.values())
         return running or self._preparation.busy or self._errands.busy
+
+    @property
+    def preparing(self) -> bool:
+        """Whether another exemplar is on its way."""
+        return self._preparation.busy
 
     @property
     def measuring(self) -> bool:
@@ -221,6 +235,20 @@ class Controller(QObject):
     def show_stage(self, column_id: int, stage: Frame | None) -> None:
         """Let the tabs look at a stage of a column's run; None goes back to the result."""
         self._stage = None if stage is None else (column_id, stage)
+        self._refresh.start()
+
+    def ask_about(self, probe: Probe | None) -> None:
+        """Ask about this pixel, or about none, whatever was asked about before."""
+        self._set_probe(probe)
+
+    @property
+    def probe(self) -> Probe | None:
+        """The pixel that is asked about."""
+        return self._probe
+
+    def show_lesson(self, lesson: LessonScene) -> None:
+        """Tell everybody about the lesson that is given."""
+        self._lesson = lesson
         self._refresh.start()
 
     def _set_probe(self, probe: Probe | None) -> None:

@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 
 class Rank(IntEnum):
-    """Who goes first: what is under the user's finger, what they have just changed, everything else."""
+    """Who goes first: what is under the user's finger, what they have just changed, the rest, what comes later."""
 
     DRAFT = 0
     CHANGED = 1
     REST = 2
+    AHEAD = 3
 
 
 class Slots:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Mark
+    from texlab_core.documents.lessons import LessonStep
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
@@ -222,6 +223,48 @@ class TakeCell:
     wanted: tuple[int, ...]
 
 
+@dataclass(frozen=True)
+class OpenLesson:
+    """Give a lesson: one that comes with the program, or the name of one of the user's own."""
+
+    name: str
+    own: bool = False
+
+
+@dataclass(frozen=True)
+class GoToStep:
+    """Show another step of the lesson, by its index."""
+
+    place: int
+
+
+@dataclass(frozen=True)
+class LeaveLesson:
+    """Bring the user's own session back."""
+
+
+@dataclass(frozen=True)
+class SaveStep:
+    """Keep what the window shows as a step of the user's own lesson, behind the one that is shown."""
+
+    sentence: str
+
+
+@dataclass(frozen=True)
+class NewLesson:
+    """Begin a lesson of the user's own with what the window shows as its first step."""
+
+    title: str
+
+
+@dataclass(frozen=True)
+class ChangeSteps:
+    """Give the user's own lesson these steps, and show one of them."""
+
+    steps: tuple[LessonStep, ...]
+    place: int
+
+
 Intention = (
     EditParams
     | EditField
@@ -243,4 +286,10 @@ Intention = (
     | RunTuning
     | StopTuning
     | TakeCell
+    | OpenLesson
+    | GoToStep
+    | LeaveLesson
+    | SaveStep
+    | NewLesson
+    | ChangeSteps
 )

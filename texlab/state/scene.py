@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from texlab.state.lessons import NO_LESSON, LessonScene
 from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
 
@@ -186,6 +187,8 @@ class Scene:
         Every finished and measured run of the columns in this session, with a small picture, the newest last.
     stage
         The stage of the chosen column's run that the tabs look at; None: its result, or its newest preview.
+    lesson
+        The lesson that is given, and where the user's own ones are.
     """
 
     exemplar: ImageInput | None = None
@@ -197,6 +200,7 @@ class Scene:
     tuning: TuningScene = NO_TUNING
     points: tuple[ShownCell, ...] = ()
     stage: Frame | None = None
+    lesson: LessonScene = NO_LESSON
 
     @property
     def selected(self) -> ColumnScene | None:

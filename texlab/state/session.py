@@ -128,6 +128,20 @@ class _Entry:
     """The column that was chosen before the step."""
 
 
+@dataclass(frozen=True, eq=False)
+class Aside:
+    """A state with its history and the chosen column."""
+
+    entries: tuple[_Entry, ...]
+    at: int
+    selected_id: int
+
+    @property
+    def state(self) -> State:
+        """The state."""
+        return self.entries[self.at].state
+
+
 class Session(QObject):
     """The observable session with undo and redo.
 
@@ -195,6 +209,22 @@ class Session(QObject):
         """End a drag (any, or the one with this key): the next change is a step of its own."""
         if merge is None or self._entries[self._at].merge == merge:
             self._entries[self._at].merge = None
+
+    def set_aside(self) -> Aside:
+        """Return the state with its history, to be brought back later; a lesson is given meanwhile."""
+        return Aside(tuple(self._entries), self._at, self._selected)
+
+    def bring_back(self, aside: Aside) -> None:
+        """Go back to what was set aside: the state, everything that undo and redo know, and the chosen column."""
+        before = self.state
+        self._entries, self._at = list(aside.entries), aside.at
+        if self._selected != aside.selected_id:
+            self._selected = aside.selected_id
+            self.selected.emit(self._selected)
+        if self.state != before:
+            self._announce(before)
+        else:
+            self.history_changed.emit()
 
     def reset_history(self) -> None:
         """Forget the history and keep the present state."""

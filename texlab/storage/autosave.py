@@ -34,6 +34,7 @@ class Autosave(QObject):
         self._settings = settings
         self._kept: ImageInput | None = None
         self._swept = False
+        self._held: tuple[State, int] | None = None
         self._worker = Worker("autosave", parent=self)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
@@ -42,9 +43,23 @@ class Autosave(QObject):
         session.changed.connect(lambda *_: self._rest.start())
         session.selected.connect(lambda _: self._rest.start())
 
+    def hold(self, state: State, selected_id: int) -> None:
+        """Save this instead of the session, which is a lesson's for a while."""
+        self._held = state, selected_id
+
+    def release(self) -> None:
+        """Save the session again."""
+        self._held = None
+
+    @property
+    def _state(self) -> State:
+        """What is saved."""
+        return self._session.state if self._held is None else self._held[0]
+
     def remember(self) -> None:
         """Put the session into the settings."""
-        self._settings.values["session"] = session_to_json(self._session.state, self._session.selected_id)
+        selected_id = self._session.selected_id if self._held is None else self._held[1]
+        self._settings.values["session"] = session_to_json(self._state, selected_id)
 
     @property
     def busy(self) -> bool:
@@ -52,12 +67,12 @@ class Autosave(QObject):
         return self._rest.isActive() or self._worker.busy
 
     def _save(self) -> None:
-        sample = self._session.state.sample
+        sample = self._state.sample
         if sample is None:
             # The first exemplar is still being read: what was saved before is worth more.
             return
         self.remember()
-        text, state = self._settings.to_json(), self._session.state
+        text, state = self._settings.to_json(), self._state
         self._worker.submit(lambda task: self._write(text, sample, state), patient=True)
 
     def _write(self, text: str, sample: Sample, state: State) -> None:
@@ -82,7 +97,7 @@ class Autosave(QObject):
     def close(self) -> None:
         """Save for the last time, in the thread, and end it."""
         self._rest.stop()
-        state = self._session.state
+        state = self._state
         sample = state.sample
         if sample is not None:
             self.remember()

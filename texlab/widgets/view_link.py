@@ -130,6 +130,12 @@ class ViewLink(Link[Linked]):
         if self._panes:
             self._rescale(1 / self._panes[0].devicePixelRatioF())
 
+    def show_at(self, x: float, y: float, scale: float) -> None:
+        """Show this place in the middle, one image pixel as so many screen pixels."""
+        if self._panes:
+            self._centre, self._scale = QPointF(x, y), scale / self._panes[0].devicePixelRatioF()
+            self.resized()
+
     def zoom(self, factor: float) -> None:
         """Enlarge around the centre."""
         if self._panes:

@@ -8,17 +8,23 @@ from texlab.state.changes import with_cell
 from texlab.state.intentions import (
     AskOnce,
     ChangeMethod,
+    ChangeSteps,
     ChooseColumn,
     EditField,
     EditInputs,
     EditParams,
     EditSize,
     FillHoles,
+    GoToStep,
+    LeaveLesson,
+    NewLesson,
     Open,
+    OpenLesson,
     Pin,
     Point,
     RunSweep,
     RunTuning,
+    SaveStep,
     ShowMarks,
     ShowStage,
     StopSweep,
@@ -52,6 +58,8 @@ class Carrier:
         Outlines places in the exemplar.
     take_picture
         Takes what the dock of this name shows away as a picture: ``copy``, ``save`` or ``drag``.
+    teach
+        Opens, gives, changes and leaves lessons.
     """
 
     def __init__(
@@ -61,6 +69,7 @@ class Carrier:
         open_source: Callable[[str], None],
         show_marks: Callable[[tuple[Mark, ...]], None],
         take_picture: Callable[[str, str], None],
+        teach: Callable[[Intention], None],
     ) -> None:
         self._controller = controller
         self._session = controller.session
@@ -68,6 +77,7 @@ class Carrier:
         self._open_source = open_source
         self._show_marks = show_marks
         self._take_picture = take_picture
+        self._teach = teach
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -114,6 +124,8 @@ class Carrier:
                 controller.run_tuning(column_id, plan)
             case StopTuning():
                 controller.stop_tuning()
+            case OpenLesson() | GoToStep() | LeaveLesson() | SaveStep() | NewLesson() | ChangeSteps():
+                self._teach(intention)
             case TakeCell():
                 self._take(intention)
             case _:

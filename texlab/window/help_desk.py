@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint
+from PySide6.QtCore import QObject, QPoint, Signal
 
 from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
@@ -18,10 +18,16 @@ if TYPE_CHECKING:
     from texlab.window.main_window import MainWindow
 
 
-class HelpDesk:
-    """Opens the help window (made when it is first wanted), the command palette and the box about the program."""
+class HelpDesk(QObject):
+    """Opens the help window (made when it is first wanted), the command palette and the box about the program.
+
+    ``lesson_wanted(name)`` when a page leads to a lesson.
+    """
+
+    lesson_wanted = Signal(str)
 
     def __init__(self, window: MainWindow, session: Session) -> None:
+        super().__init__(window)
         self._window = window
         self._session = session
         self.help: HelpWindow | None = None
@@ -31,6 +37,7 @@ class HelpDesk:
         if self.help is None:
             self.help = HelpWindow(self._window)
             self.help.knob_wanted.connect(self._show_knob)
+            self.help.lesson_wanted.connect(self.lesson_wanted)
         self.help.open_page(page)
 
     def show_about(self) -> None:

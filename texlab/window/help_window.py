@@ -27,12 +27,20 @@ FIGURE_WIDTH = 720
 LETTERS = 140
 SMALLEST = QSize(1000, 720)
 MARGIN = 16
+ORDER = (
+    *("index", "window", "lessons", "shortcuts"),
+    *("heeger-bergen", "de-bonet", "efros-leung", "msg", "mixture", "solid"),
+    *("uncoded", "car", "ac-h", "tiling", "pixels", "bands"),
+    *("measures", "findings", "laboratory", "shape-from-texture"),
+    *("images", "export", "batches", "command-line"),
+)
 
 
 class HelpBrowser(QTextBrowser):
     """Shows pages and figures from the resources, wherever they are packed."""
 
     knob_wanted = Signal(str, str)
+    lesson_wanted = Signal(str)
     page_shown = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -90,6 +98,8 @@ class HelpBrowser(QTextBrowser):
         if text.startswith("knob:"):
             method, _, knob = text[5:].partition("/")
             self.knob_wanted.emit(method, knob)
+        elif text.startswith("lesson:"):
+            self.lesson_wanted.emit(text[7:])
         elif text.endswith(".md") and "/" not in text:
             self.show_page(text[:-3])
         elif text.startswith("#"):
@@ -100,6 +110,7 @@ class HelpWindow(QDialog):
     """The pages on the left, the page on the right."""
 
     knob_wanted = Signal(str, str)
+    lesson_wanted = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -115,6 +126,7 @@ class HelpWindow(QDialog):
         outer.addLayout(layout)
         self.list.currentItemChanged.connect(lambda item, _: item and self.browser.show_page(item.data(256)))
         self.browser.knob_wanted.connect(self.knob_wanted)
+        self.browser.lesson_wanted.connect(self.lesson_wanted)
         self.browser.page_shown.connect(self._mark)
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -153,7 +165,7 @@ class HelpWindow(QDialog):
 
 
 def help_pages() -> list[tuple[str, str]]:
-    """Return (name, title) of every page, the index first."""
+    """Return (name, title) of every page, in the order in which somebody new would read them."""
     found = []
     folder = resource("help")
     for entry in folder.iterdir() if folder.is_dir() else ():
@@ -161,4 +173,6 @@ def help_pages() -> list[tuple[str, str]]:
             first = entry.read_text(encoding="utf-8").splitlines()[:1]
             title = first[0].lstrip("# ").strip() if first else entry.name
             found.append((entry.name[:-3], title))
-    return sorted(found, key=lambda page: (page[0] != "index", page[1].lower()))
+    # From the window over the methods to the command line; a page that is not named here comes last.
+    places = {name: place for place, name in enumerate(ORDER)}
+    return sorted(found, key=lambda page: (places.get(page[0], len(places)), page[1].lower()))

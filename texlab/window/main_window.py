@@ -26,6 +26,7 @@ from texlab.widgets.plain import Label, set_tip
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.layouts import SIDES, Layouts
+from texlab.window.lesson_bar import LessonBar
 from texlab.window.message_bar import MessageBar
 from texlab.window.panel_strip import PanelStrip
 from texlab.window.screen_fit import first_window, panel_sizes, within
@@ -89,6 +90,8 @@ class MainWindow(QMainWindow):
         self._middle_layout = QVBoxLayout(self._middle)
         self._middle_layout.setContentsMargins(0, 0, 0, 0)
         self._middle_layout.setSpacing(0)
+        self.lesson_bar = LessonBar(self.actions_by_name)
+        self._middle_layout.addWidget(self.lesson_bar)
         self._loading = Label("")
         self._loading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._middle_layout.addWidget(self._loading, 1)
@@ -272,6 +275,21 @@ class MainWindow(QMainWindow):
         word.setProperty("role", "muted")
         self.statusBar().insertPermanentWidget(1, word)
         self.statusBar().insertPermanentWidget(2, box)
+
+    def show_dock(self, name: str) -> bool:
+        """Bring a dock to the front and leave the keyboard where it is; return whether there is such a dock."""
+        dock = self.docks.get(name)
+        if dock is not None:
+            dock.show()
+            dock.raise_()
+        return dock is not None
+
+    def front_dock(self) -> str:
+        """Return the name of the tab that can be seen; "" when there is none."""
+        for name, dock in self.docks.items():
+            if name not in SIDES and dock.isVisible() and not dock.visibleRegion().isEmpty():
+                return name
+        return ""
 
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""

@@ -1,0 +1,299 @@
+"""Lessons in the window: given with the keys of a clicker, instant, and the user's own session comes back."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from dock_scenes import feed, scene_of
+from PySide6.QtCore import QPoint, Qt
+
+from tests.gui.conftest import hb, ids, result_image, wait_idle
+from texlab.docks import dock_classes
+from texlab.docks.lessons import LessonsDock
+from texlab.state.intentions import GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
+from texlab.state.lessons import LessonScene
+from texlab.storage.paths import config_dir
+from texlab_core.documents.lessons import read_lesson
+from texlab_core.engine.run import run
+from texlab_core.lessons.running import jobs
+from texlab_core.lessons.shelf import bundled
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from PySide6.QtWidgets import QTreeWidgetItem
+
+    from texlab.app.explorer import Explorer
+
+SMALL: dict[str, Any] = {
+    "format": "texlab-lesson",
+    "version": 1,
+    "title": "Small",
+    "chapter": "",
+    "papers": [],
+    "summary": "",
+    "steps": [
+        {
+            "sentence": "One.",
+            "note": "The first.",
+            "question": "Why?",
+            "answer": "So.",
+            "exemplar": {
+                "source": "gallery:stochastic-lava",
+                "crop": {"top": 0, "left": 0, "height": 32, "width": 32},
+            },
+            "size": {"width": 40, "height": 40},
+            "seed": 3,
+            "columns": [
+                {"method": "heeger-bergen", "parameters": {"scales": 2, "iterations": 1}},
+                {"method": "tiling"},
+            ],
+            "chosen": 1,
+            "series": {"column": 0, "parameter": "iterations", "values": [0, 1, 2]},
+            "drawing": {"kind": "histograms", "settings": {"levels": 1}},
+            "tab": {"name": "pyramid", "settings": {"kind": "laplacian"}},
+            "pixel": {"column": 1, "x": 5, "y": 6},
+            "view": {"zoom": 3.0, "x": 10.0, "y": 12.0, "tile": True},
+            "marks": [{"top": 1, "left": 2, "height": 5, "width": 6}],
+        },
+        {
+            "sentence": "Two.",
+            "note": "The second.",
+            "exemplar": "gallery:stochastic-sea",
+            "size": {"width": 32, "height": 48},
+            "seed": 1,
+            "columns": [{"method": "pixels"}],
+        },
+        {"sentence": "Three.", "note": "A drawing alone.", "seed": 1, "drawing": {"kind": "circles"}},
+    ],
+}
+
+
+@pytest.fixture
+def small() -> str:
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    (folder / "small.json").write_text(json.dumps(SMALL))
+    return "small"
+
+
+def give(qtbot: Any, explorer: Explorer, name: str, *, own: bool = True) -> None:
+    explorer.carrier.carry_out(OpenLesson(name, own))
+    qtbot.waitUntil(lambda: explorer.teacher.scene.name == name)
+
+
+def wait_ready(qtbot: Any, explorer: Explorer) -> None:
+    qtbot.waitUntil(lambda: all(explorer.teacher.scene.ready))
+    wait_idle(qtbot, explorer)
+
+
+def item_of(dock: LessonsDock, name: str) -> QTreeWidgetItem:
+    for heading in dock.list.findItems("", Qt.MatchFlag.MatchContains):
+        for place in range(heading.childCount()):
+            item = heading.child(place)
+            if item is not None and item.data(0, Qt.ItemDataRole.UserRole)[0] == name:
+                return item
+    raise AssertionError(name)
+
+
+def test_a_step_sets_everything_and_leaving_brings_everything_back(
+    qtbot: Any, explorer: Explorer, small: str
+) -> None:
+    session = explorer.session
+    session.set_seed(9)
+    wait_idle(qtbot, explorer)
+    before, mine, undo = session.state, result_image(explorer, ids(explorer)[0]), session.undo_text
+    give(qtbot, explorer, small)
+    wait_ready(qtbot, explorer)
+    lesson = explorer.teacher.scene.lesson
+    assert lesson is not None
+    for column, job in zip(ids(explorer), jobs(lesson, lesson.steps[0]), strict=False):
+        assert np.array_equal(result_image(explorer, column), run(job).image)
+    assert set(ids(explorer)).isdisjoint(column.id for column in before.columns)
+    assert session.selected_id == ids(explorer)[1]
+    probe = explorer.controller.probe
+    assert probe is not None
+    assert (probe.column_id, probe.row, probe.column, probe.pinned) == (ids(explorer)[1], 6, 5, True)
+    assert explorer.window.front_dock() == "pyramid"
+    assert explorer.window.docks["pyramid"].widget().settings()["kind"] == "laplacian"
+    assert explorer.window.actions_by_name["tile"].isChecked()
+    assert explorer.workspace.exemplar.pane._marks
+    bar = explorer.window.lesson_bar
+    assert bar.isVisible()
+    assert (bar.count.text(), bar.sentence.text(), bar.readiness.text()) == ("1 of 3", "One.", "ready")
+    # What students do at a step is theirs to undo, and ends with it.
+    session.set_seed(77)
+    assert session.undo_text == "seed 77"
+    explorer.carrier.carry_out(GoToStep(2))
+    assert session.undo_text is None
+    assert ids(explorer) == []
+    explorer.carrier.carry_out(LeaveLesson())
+    wait_idle(qtbot, explorer)
+    assert session.state is before
+    assert session.undo_text == undo
+    assert not bar.isVisible()
+    assert np.array_equal(result_image(explorer, ids(explorer)[0]), mine)
+    session.undo()
+    assert session.state.seed == 5
+
+
+def test_what_is_saved_during_a_lesson_is_the_users_session(qtbot: Any, explorer: Explorer, small: str) -> None:
+    explorer.autosave.remember()
+    saved = dict(explorer.settings.values["session"])
+    give(qtbot, explorer, small)
+    wait_ready(qtbot, explorer)
+    explorer.autosave.remember()
+    assert explorer.settings.values["session"] == saved
+    explorer.window.close()
+    assert explorer.settings.values["session"] == saved
+
+
+def test_a_ready_step_shows_what_was_kept_without_running_anything(
+    qtbot: Any, explorer: Explorer, small: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    give(qtbot, explorer, small)
+    wait_ready(qtbot, explorer)
+
+    def never(*_: Any, **__: Any) -> None:
+        raise AssertionError("a ready step ran a method")
+
+    monkeypatch.setattr("texlab.runs.column_run.run", never)
+    for place in (1, 0, 1):
+        explorer.carrier.carry_out(GoToStep(place))
+        wait_idle(qtbot, explorer)
+        assert [each.status for each in explorer.controller.scene().columns] == ["finished"] * len(ids(explorer))
+    explorer.carrier.carry_out(GoToStep(0))
+    wait_idle(qtbot, explorer)
+    # The slider too: its values were made ahead.
+    dock = explorer.window.docks["lessons"].widget()
+    explorer.window.raise_dock("lessons")
+    wait_idle(qtbot, explorer)
+    qtbot.keyClick(dock.slider, Qt.Key.Key_Right)
+    wait_idle(qtbot, explorer)
+    assert explorer.session.state.columns[0].params.to_json()["iterations"] == 2
+    assert explorer.controller.scene().columns[0].status == "finished"
+
+
+def test_the_bundled_lesson_is_given_with_page_down_alone(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    explorer = open_window(str(texture), [hb()])
+    window, session = explorer.window, explorer.session
+    mine = session.state
+    qtbot.keyClick(window, Qt.Key.Key_L, Qt.KeyboardModifier.ControlModifier)
+    dock = window.docks["lessons"].widget()
+    qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0)
+    item = item_of(dock, "heeger-bergen")
+    dock.list.scrollToItem(item)
+    where = dock.list.visualItemRect(item)
+    qtbot.mouseClick(
+        dock.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(where.left() + 5, where.center().y())
+    )
+    steps = bundled()["heeger-bergen"].steps
+    qtbot.waitUntil(lambda: explorer.teacher.scene.lesson is not None)
+    for place, step in enumerate(steps):
+        wait_idle(qtbot, explorer)
+        assert window.lesson_bar.count.text() == f"{place + 1} of {len(steps)}"
+        assert window.lesson_bar.sentence.text() == step.sentence
+        columns = explorer.controller.scene().columns
+        assert [each.method for each in columns] == [each.method for each in step.columns]
+        assert all(each.result is not None and each.result.job.seed == step.seed for each in columns)
+        assert step.tab is not None
+        assert window.front_dock() == step.tab.name
+        qtbot.keyClick(window.focusWidget() or window, Qt.Key.Key_PageDown)
+    # The last step stays; back again with Page Up.
+    assert explorer.teacher.scene.place == len(steps) - 1
+    qtbot.keyClick(window.focusWidget() or window, Qt.Key.Key_PageUp)
+    assert explorer.teacher.scene.place == len(steps) - 2
+    explorer.carrier.carry_out(LeaveLesson())
+    wait_idle(qtbot, explorer)
+    assert session.state is mine
+
+
+def test_page_down_means_nothing_without_a_lesson(qtbot: Any, explorer: Explorer) -> None:
+    assert not explorer.window.actions_by_name["lesson-next"].isEnabled()
+    before = explorer.session.state
+    qtbot.keyClick(explorer.window, Qt.Key.Key_PageDown)
+    assert explorer.session.state is before
+
+
+def test_a_lesson_that_cannot_be_read_leaves_the_session_alone(qtbot: Any, explorer: Explorer) -> None:
+    before = explorer.session.state
+    with qtbot.waitSignal(explorer.controller.problem) as told:
+        explorer.carrier.carry_out(OpenLesson("custard"))
+    assert "There is no lesson called" in told.args[0]
+    assert explorer.session.state is before
+
+
+def test_what_the_window_shows_becomes_a_lesson_of_ones_own(qtbot: Any, explorer: Explorer) -> None:
+    window, session = explorer.window, explorer.session
+    window.raise_dock("histograms")
+    wait_idle(qtbot, explorer)
+    wanted, image = session.state, result_image(explorer, ids(explorer)[0])
+    explorer.carrier.carry_out(NewLesson("My lesson"))
+    qtbot.waitUntil(lambda: explorer.teacher.scene.name == "my-lesson")
+    wait_ready(qtbot, explorer)
+    assert explorer.teacher.scene.own
+    assert window.front_dock() == "histograms"
+    shown = session.state
+    assert (shown.seed, shown.size) == (wanted.seed, wanted.size)
+    assert [each.params for each in shown.columns] == [each.params for each in wanted.columns]
+    assert np.array_equal(result_image(explorer, ids(explorer)[0]), image)
+    session.set_seed(12)
+    wait_idle(qtbot, explorer)
+    explorer.carrier.carry_out(SaveStep("Another seed."))
+    qtbot.waitUntil(lambda: explorer.teacher.scene.lesson is not None and explorer.teacher.scene.place == 1)
+    wait_ready(qtbot, explorer)
+    lesson = read_lesson(config_dir() / "lessons" / "my-lesson.json")
+    assert [each.seed for each in lesson.steps] == [5, 12]
+    assert lesson.steps[1].sentence == "Another seed."
+    explorer.carrier.carry_out(LeaveLesson())
+    wait_idle(qtbot, explorer)
+    assert session.state is wanted
+
+
+def test_every_tab_and_setting_of_the_bundled_lessons_is_one_of_the_window(qtbot: Any) -> None:
+    docks = {each.name: each() for each in dock_classes()}
+    for dock in docks.values():
+        qtbot.addWidget(dock)
+    for name, lesson in bundled().items():
+        for step in lesson.steps:
+            if step.tab is not None:
+                assert step.tab.name in docks, f"{name}: {step.sentence}"
+                assert docks[step.tab.name].take_settings(step.tab.settings) == (), f"{name}: {step.sentence}"
+                for key, value in step.tab.settings.items():
+                    assert docks[step.tab.name].settings()[key] == value
+
+
+def test_the_dock_says_what_belongs_to_a_step_and_hides_the_answer(qtbot: Any, small: str) -> None:
+    dock = LessonsDock()
+    qtbot.addWidget(dock)
+    dock.resize(900, 300)
+    dock.show()
+    lesson = read_lesson(config_dir() / "lessons" / f"{small}.json")
+    sent: list[Any] = []
+    dock.intention.connect(sent.append)
+    folder = config_dir() / "lessons"
+    (folder / "bad.json").write_text("[]")
+    given = LessonScene(folder, 0, small, lesson, True, 0, (True, False, False))
+    scene = scene_of()
+    object.__setattr__(scene, "lesson", given)
+    feed(dock, scene)
+    assert dock.note.text() == "The first."
+    assert not dock.answer_label.isVisible()
+    dock.reveal.click()
+    assert dock.answer_label.isVisible()
+    assert dock.answer_label.text() == "So."
+    assert dock.jump.count() == 3
+    assert dock.list.findItems("bad.json", Qt.MatchFlag.MatchContains)
+    dock.jump.activated.emit(2)
+    dock.leave_button.click()
+    dock.save_button.click()
+    dock.new_button.click()
+    assert [type(each) for each in sent] == [GoToStep, LeaveLesson, SaveStep, NewLesson]
+    # A foreign name is text, whatever it looks like.
+    assert item_of(dock, small).text(0) == "Small (3)"

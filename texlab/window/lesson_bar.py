@@ -1,0 +1,73 @@
+"""The line above the pictures while a lesson is given: where it is, the large sentence, readiness."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
+
+from texlab.widgets.plain import Label
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from PySide6.QtGui import QAction
+
+    from texlab.state.lessons import LessonScene
+
+SENTENCE_FACTOR = 1.6
+
+
+class LessonBar(QWidget):
+    """Back, N of M, next; the sentence; which steps are ready; leave."""
+
+    def __init__(self, actions: Mapping[str, QAction]) -> None:
+        super().__init__()
+        self.setObjectName("lesson-bar")
+        self.count = Label("")
+        self.count.setObjectName("lesson-count")
+        self.sentence = Label("")
+        self.sentence.setObjectName("lesson-sentence")
+        self.sentence.setWordWrap(True)
+        self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.sentence.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        self.readiness = Label("")
+        self.readiness.setObjectName("lesson-readiness")
+        self.readiness.setProperty("role", "muted")
+        for name, sign in (("lesson-back", "◀"), ("lesson-next", "▶"), ("lesson-leave", "✕")):
+            # A tool button shows the icon's text; menus and the palette keep the whole name.
+            actions[name].setIconText(sign)
+        line = QHBoxLayout(self)
+        line.setContentsMargins(8, 4, 8, 4)
+        line.addWidget(_button(actions["lesson-back"]))
+        line.addWidget(self.count)
+        line.addWidget(_button(actions["lesson-next"]))
+        line.addWidget(self.sentence, 1)
+        line.addWidget(self.readiness)
+        line.addWidget(_button(actions["lesson-leave"]))
+        self.hide()
+
+    def show_lesson(self, lesson: LessonScene) -> None:
+        """Show a step, or nothing when no lesson is given."""
+        step = lesson.step
+        self.setVisible(step is not None)
+        if step is None or lesson.lesson is None:
+            return
+        count = len(lesson.lesson.steps)
+        self.count.setText(f"{lesson.place + 1} of {count}")
+        font = self.font()
+        font.setPointSizeF(font.pointSizeF() * SENTENCE_FACTOR)
+        self.sentence.setFont(font)
+        self.sentence.setText(step.sentence)
+        ready = sum(lesson.ready)
+        self.readiness.setText("ready" if ready == count else f"{ready} of {count} ready")
+
+
+def _button(action: QAction) -> QToolButton:
+    button = QToolButton()
+    button.setDefaultAction(action)
+    button.setAutoRaise(True)
+    button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    button.setAccessibleName(action.toolTip())
+    return button
