@@ -25,7 +25,7 @@ from texlab.docks.recent import Same
 from texlab.state.intentions import EditField, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
 from texlab.state.lessons import NO_LESSON
 from texlab.widgets.picture_pane import PicturePane
-from texlab.widgets.plain import Label, set_tip, tip_text
+from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -166,12 +166,12 @@ class LessonsDock(FramedDock):
                 self.list.addTopLevelItem(headings[heading])
             item = QTreeWidgetItem([f"{lesson.title} ({len(lesson.steps)})"])
             item.setData(0, Qt.ItemDataRole.UserRole, (name, own))
-            item.setToolTip(0, tip_text(_about(lesson)))
+            set_tip(item, _about(lesson))
             headings[heading].addChild(item)
         for problem in problems:
             item = QTreeWidgetItem([problem])
             item.setFlags(Qt.ItemFlag.ItemIsEnabled)
-            item.setToolTip(0, tip_text(problem))
+            set_tip(item, problem)
             self.list.addTopLevelItem(item)
         self.list.expandAll()
         self._mark()
