@@ -14,7 +14,7 @@ from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.lessons import LessonsDock
 from texlab.state.intentions import GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
-from texlab.state.lessons import LessonScene
+from texlab.state.lesson_scene import LessonScene
 from texlab.storage.paths import config_dir
 from texlab_core.documents.lessons import read_lesson
 from texlab_core.engine.run import run

@@ -23,7 +23,7 @@ from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.state.intentions import EditField, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
-from texlab.state.lessons import NO_LESSON
+from texlab.state.lesson_scene import NO_LESSON
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 

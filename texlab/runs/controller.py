@@ -20,7 +20,7 @@ from texlab.runs.tuning_runner import TuningRunner
 from texlab.runs.worker import Request, Worker
 from texlab.state.changes import rescaled
 from texlab.state.difference import difference
-from texlab.state.lessons import NO_LESSON
+from texlab.state.lesson_scene import NO_LESSON
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.estimate import estimate_of, in_words, is_large
@@ -31,7 +31,7 @@ from texlab_core.warming import Need, Warmth, every_need
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab.state.lessons import LessonScene
+    from texlab.state.lesson_scene import LessonScene
     from texlab.state.scene import Frame
     from texlab.state.session import Column, Sample, Session, State
     from texlab.state.sweeps import SweepPlan

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from texlab.state.lessons import NO_LESSON, LessonScene
+from texlab.state.lesson_scene import NO_LESSON, LessonScene
 from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from PySide6.QtGui import QAction
 
-    from texlab.state.lessons import LessonScene
+    from texlab.state.lesson_scene import LessonScene
 
 SENTENCE_FACTOR = 1.6
 

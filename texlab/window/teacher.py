@@ -10,7 +10,8 @@ from PySide6.QtCore import QObject
 
 from texlab.runs.lesson_runner import LessonRunner
 from texlab.state.intentions import ChangeSteps, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
-from texlab.state.lessons import Draft, LessonScene, source_of, state_of, step_of
+from texlab.state.lesson_scene import LessonScene
+from texlab.state.lessons import Draft, source_of, state_of, step_of
 from texlab.state.scene import Probe
 from texlab.style.pictures import Mark
 from texlab_core.errors import InputError
