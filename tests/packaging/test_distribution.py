@@ -40,7 +40,7 @@ def project() -> dict[str, Any]:
 
 def locked() -> dict[str, list[tuple[Version, str]]]:
     """Return the versions in the lock file by package, with the conditions under which each is meant."""
-    text = (ROOT / "requirements" / "lock.txt").read_text("utf-8").replace("\\\n", " ")
+    text = (ROOT / ".ci" / "lock.txt").read_text("utf-8").replace("\\\n", " ")
     found: dict[str, list[tuple[Version, str]]] = {}
     for line in text.splitlines():
         requirement = Requirement(line.partition("--hash")[0].strip())
@@ -52,7 +52,7 @@ def locked() -> dict[str, list[tuple[Version, str]]]:
 
 
 def test_everything_in_the_lock_file_has_hashes_and_no_address() -> None:
-    text = (ROOT / "requirements" / "lock.txt").read_text("utf-8")
+    text = (ROOT / ".ci" / "lock.txt").read_text("utf-8")
     assert "//" not in text
     for block in text.replace("\\\n", " ").splitlines():
         assert re.search(r"--hash=sha256:[0-9a-f]{64}", block), block
