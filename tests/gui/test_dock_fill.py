@@ -125,7 +125,7 @@ def test_undo_takes_back_strokes_on_the_picture_and_changes_elsewhere(
 
 def test_a_new_filled_column_is_in_sight(qtbot: Any, filling: tuple[Explorer, FillDock]) -> None:
     explorer, dock = filling
-    for _ in range(6):
+    for _ in range(14):
         explorer.session.duplicate_column(ids(explorer)[0])
     wait_idle(qtbot, explorer)
     count = len(ids(explorer))

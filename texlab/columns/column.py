@@ -129,6 +129,7 @@ class ColumnView(QFrame):
         self.pane.hovered.connect(lambda row, column: self.hovered.emit(self.column_id, row, column))
         for part in (
             self.grip,
+            self.line,
             self.progress,
             self.method_box,
             self.run_button,

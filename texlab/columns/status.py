@@ -55,9 +55,9 @@ def status_parts(scene: ColumnScene) -> list[str]:
     if scene.status == "finished" and scene.result is not None:
         result = scene.result
         made = result.image.shape[:2] if result.volume is None else result.volume.shape[:3]
-        parts += [size_text(made), duration(scene.elapsed_s)]
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
+        parts += [size_text(made), duration(scene.elapsed_s)]
     if scene.status == "finished":
         parts += signs(scene.findings)
     return parts

@@ -21,7 +21,7 @@ COMMANDS = (
     Command("&File", "save-tab", "Save the &tab's picture ...", "Ctrl+Shift+S", "Save what the open tab shows"),
     Command("&File", "export-many", "&Export ...", "Ctrl+E", "Write results as files, a figure or an animation"),
     Command("&File", "save-project", "Save pro&ject ...", "Ctrl+Alt+S", "Keep everything in one file"),
-    Command("&File", "student-copy", "Save a copy for a &student ...", "", "Without paths of this computer"),
+    Command("&File", "student-copy", "Save a copy for a st&udent ...", "", "Without paths of this computer"),
     Command("&File", "batch", "Run for &many ...", "", "Run the columns' methods on many images, or a plan"),
     Command("&File", "quit", "&Quit", "Ctrl+Q", "Close the window; the session comes back", separator=True),
     Command("&Edit", "undo", "&Undo", "Ctrl+Z", "Take the last change back"),
