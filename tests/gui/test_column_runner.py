@@ -17,6 +17,7 @@ from texlab.runs.worker import Worker
 from texlab.state.session import Column, State
 from texlab.state.sweeps import SweepPlan
 from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.job import Job
 from texlab_core.sheets.sweep import Vary
 from texlab_core.warming import Warmth
 
@@ -56,7 +57,8 @@ def start(runner: ColumnRunner, size: tuple[int, int] = (96, 128), **how: Any) -
 
 def finished(size: tuple[int, int], seconds: float, *, draft: bool = False) -> Finished:
     image = np.zeros((*size, 3), np.float32)
-    job = SimpleNamespace(size=size, key=("made", size))
+    inputs = {"exemplar": exemplar()}
+    job = Job(method=COLUMN.method, inputs=inputs, params=COLUMN.params, size=size, seed=int(1e6 * seconds))
     result: Any = SimpleNamespace(image=image, job=job, elapsed_s=seconds, maps={}, details=None, model=None)
     return Finished(result, np.zeros((*size, 3), np.uint8), (), draft)
 
