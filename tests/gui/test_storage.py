@@ -71,7 +71,7 @@ def test_a_session_is_whole_whenever_the_program_ends(autosave: Autosave, monkey
         assert choice.source.name == f"pasted {saved['seed']}"
         assert expected.sample is not None
         assert np.array_equal(load(choice.source).pixels, expected.sample.source.pixels)
-        ((_, _, inputs, _),) = columns_from_json(saved)
+        inputs = columns_from_json(saved)[0][2]
         assert dict(inputs)["mask"].sha256 == dict(expected.columns[0].inputs)["mask"].sha256
         seen.append(saved["seed"])
     assert seen == sorted(seen)
