@@ -124,6 +124,7 @@ class LessonsDock(FramedDock):
         column.addStretch(1)
         scroll = QScrollArea()
         scroll.setObjectName("lessons-words")
+        scroll.setAccessibleName("Words of the step")
         scroll.setWidgetResizable(True)
         scroll.setWidget(inner)
         self._drawing = QWidget()
