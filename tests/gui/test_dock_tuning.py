@@ -155,7 +155,12 @@ class Bench:
         self.dock = TuningDock()
         self.host = DockHost(self.dock, Slots(1))
         self.carrier = Carrier(
-            self.controller, self.session.select, lambda source: None, lambda marks: None, lambda dock, how: None
+            self.controller,
+            self.session.select,
+            lambda source: None,
+            lambda marks: None,
+            lambda dock, how: None,
+            lambda intention: None,
         )
         self.intended = []
         self.dock.intention.connect(self.intended.append)

@@ -32,6 +32,7 @@ def setup_env(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
         return SimpleNamespace(returncode=0)
 
     monkeypatch.setattr(module, "VENV", tmp_path)
+    monkeypatch.delenv("TEXLAB_LOCKED", raising=False)
     monkeypatch.setattr(module, "loads", lambda soname: False)
     monkeypatch.setattr(module, "is_root", lambda: False)
     monkeypatch.setattr(module.shutil, "which", lambda name: "/usr/bin/apt-get" if name == "apt-get" else None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from texlab_core.sheets.sweep import Cell
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from numpy.typing import NDArray
 
     from texlab.state.scene import ColumnScene
     from texlab.style.pictures import Picture
@@ -25,8 +27,13 @@ SIDE = 128
 
 def small(image: FloatImage) -> Picture:
     """Return every n-th pixel of an image as a picture of at most 128 x 128."""
-    step = -(-max(image.shape[:2]) // SIDE)
-    return to_picture(np.ascontiguousarray(image[::step, ::step]))
+    return to_picture(thinned(image))
+
+
+def thinned(pixels: NDArray[Any]) -> NDArray[Any]:
+    """Return every n-th pixel, at most 128 x 128, as an array of its own."""
+    step = max(1, -(-max(pixels.shape[:2]) // SIDE))
+    return np.ascontiguousarray(pixels[::step, ::step])
 
 
 class KeptPoints:
@@ -48,7 +55,9 @@ class KeptPoints:
             if kept is not None and kept[0] is column.measures:
                 continue
             cell = Cell(index=column.id, job=result.job, values={}, measures=column.measures)
-            self._kept[key] = (column.measures, ShownCell(cell, small(result.image)))
+            # The column's picture is there already: nothing is converted in the window's thread.
+            shown = small(result.image) if column.picture is None else thinned(column.picture)
+            self._kept[key] = (column.measures, ShownCell(cell, shown))
             self._kept.move_to_end(key)
             while len(self._kept) > MOST:
                 self._kept.popitem(last=False)
