@@ -12,7 +12,7 @@ from texlab_core.documents.record import read_recipe, save_result
 from texlab_core.engine.inputs import ArraysInput, DataInput
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
-from texlab_core.files.wording import printable, sentence_case
+from texlab_core.files.wording import did_you_mean, printable, sentence_case
 from texlab_core.images.exemplar import as_exemplar
 
 NOISE = np.arange(24, dtype=np.float32).reshape(4, 6) / 32
@@ -59,3 +59,8 @@ def test_the_names_of_files_keep_their_case(tmp_path):
     assert sentence_case("wall.png") == "wall.png"
     assert sentence_case("") == ""
     assert Path(as_exemplar(NOISE, name="Wall.png").name) == Path("Wall.png")
+
+
+def test_the_name_that_is_most_like_a_wrong_one():
+    assert did_you_mean("rond", ["sweep", "rounds", "round"]) == "did you mean round?"
+    assert did_you_mean("zzz", ["rounds"]) == did_you_mean(3, ["rounds"]) == did_you_mean("rounds", []) == ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 import unicodedata
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.whole import write_whole
+from texlab_core.files.wording import did_you_mean
 
 if TYPE_CHECKING:
     import os
@@ -253,7 +253,6 @@ def pick(presets: tuple[Preset, ...], name: str, method: str | None = None) -> P
         raise PresetError(f"Several methods have a preset called {found[0].name}: say {listed}.")
     if not found:
         names = sorted({each.name for each in among.values()})
-        close = difflib.get_close_matches(name, names, n=1)
-        hint = f"did you mean {close[0]}?" if close else f"there are {', '.join(names[:12]) or 'none'}"
+        hint = did_you_mean(name, names) or f"there are {', '.join(names[:12]) or 'none'}"
         raise PresetError(f"There is no preset{of_method} called {strict_json.shorten(name)} ({hint}).")
     return found[0]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import inspect
 import json
 import math
@@ -26,6 +25,7 @@ from typing import (
 from weakref import WeakKeyDictionary
 
 from texlab_core.errors import ParamError
+from texlab_core.files.wording import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -346,8 +346,8 @@ def _reject_unknown(params: type[Params], names: Mapping[str, object]) -> None:
     known = [each.name for each in describe(params)]
     for name in names:
         if name not in known:
-            close = difflib.get_close_matches(str(name), known, n=1)
-            hint = f" (did you mean {close[0]}?)" if close else ""
+            close = did_you_mean(name, known)
+            hint = f" ({close})" if close else ""
             listed = ", ".join(known) if known else "nothing, this method has no parameters"
             raise ParamError("parameter name", f"one of {listed}{hint}", name)
 

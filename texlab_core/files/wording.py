@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 LONGEST_NAME = 255
 
 
@@ -25,3 +30,11 @@ def printable(text: str, longest: int = LONGEST_NAME) -> str:
 def sentence_case(name: str) -> str:
     """Return the start of a sentence: only the article gets a capital, names of files stay as they are."""
     return f"T{name[1:]}" if name.startswith("the ") else name
+
+
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """Return ``"did you mean ...?"`` with the known name that is most like this one, empty when none is."""
+    import difflib
+
+    close = difflib.get_close_matches(str(name), known, n=1)
+    return f"did you mean {close[0]}?" if close else ""

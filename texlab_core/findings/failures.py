@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -12,6 +11,7 @@ from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import ParamError
+from texlab_core.files.wording import did_you_mean
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
@@ -423,6 +423,6 @@ def find_example(name: str) -> Failure:
     known = examples()
     if name in known:
         return known[name]
-    close = difflib.get_close_matches(name, known, n=1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
+    close = did_you_mean(name, known)
+    hint = f" ({close})" if close else ""
     raise ParamError("failure", f"one of {', '.join(known)}{hint}", name)

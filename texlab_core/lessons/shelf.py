@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from texlab_core.documents.lesson_parts import LessonError
 from texlab_core.documents.lessons import lesson_from_text, read_lesson
 from texlab_core.files.resources import resource
 from texlab_core.files.strict_json import shorten
+from texlab_core.files.wording import did_you_mean
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,7 +57,6 @@ def find(name: str) -> Lesson:
         return read_lesson(name)
     known = bundled()
     if name not in known:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f"did you mean {close[0]}?" if close else f"there are {', '.join(known)}"
+        hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
         raise LessonError(f"There is no lesson called {shorten(name)} ({hint}).")
     return known[name]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from texlab_core.engine.params import Field, Knob, describe, frozen_mapping
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError, ParamError
 from texlab_core.files import strict_json
+from texlab_core.files.wording import did_you_mean
 from texlab_core.measures.registry import written
 
 if TYPE_CHECKING:
@@ -73,8 +73,8 @@ def check_knob(name: str, params: type[Params], *, number: bool = False) -> Fiel
     fields = {each.name: each for each in describe(params)}
     if name not in fields:
         known = [*fields, "seed"]
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f" (did you mean {close[0]}?)" if close else ""
+        close = did_you_mean(name, known)
+        hint = f" ({close})" if close else ""
         raise ParamError("vary", f"one of {', '.join(known)}{hint}", name)
     if number and fields[name].kind not in ("int", "float"):
         raise ParamError("vary", f"a list of values for {name}", "a range")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -17,6 +16,7 @@ from texlab_core.errors import InputError, RecipeError
 from texlab_core.files import strict_json
 from texlab_core.files.regular import open_regular, reason
 from texlab_core.files.resources import resource
+from texlab_core.files.wording import did_you_mean
 from texlab_core.images.formats.png_text import SIGNATURE, read_text
 from texlab_core.sheets.figure import FIGURE_SUFFIXES
 from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
@@ -325,8 +325,7 @@ def find_sweep(source: str) -> SweepRecipe:
     known = {each.name: each for each in bundled_sweeps()}
     if source in known:
         return known[source]
-    close = difflib.get_close_matches(source, known, n=1)
-    hint = f"did you mean {close[0]}?" if close else f"there are {', '.join(known)}"
+    hint = did_you_mean(source, known) or f"there are {', '.join(known)}"
     raise RecipeError(f"There is no sweep called {strict_json.shorten(source)} ({hint}).")
 
 
