@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.core.toy import NoiseParams, noise_method
+from tests.core.toy import NoiseParams, noise_method, stock
 from texlab_core import synthesize
 from texlab_core.documents.reading import KEY
 from texlab_core.documents.record import read_recipe, save_result
@@ -27,8 +27,6 @@ from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.formats.writing import write_image
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from tests.cli.conftest import Texlab
 
 RAMP = np.linspace(0, 1, 20 * 30 * 3, dtype=np.float32).reshape(20, 30, 3)
@@ -36,13 +34,9 @@ TOY = ("--method", "toy-noise")
 
 
 @pytest.fixture(autouse=True)
-def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def toy(monkeypatch: pytest.MonkeyPatch) -> None:
     """Register a method with a known answer."""
-    registry.methods()
-    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method())
-    registry.methods.cache_clear()
-    yield
-    registry.methods.cache_clear()
+    stock(monkeypatch, registry._METHODS, noise_method())
 
 
 @pytest.fixture
@@ -285,8 +279,7 @@ def test_redo_without_its_state_says_that_nothing_can_replace_it(
     texlab: Texlab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     inputs = (registry.EXEMPLAR, registry.InputSpec("state", "Arrays.", kind="arrays", required=False))
-    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method(inputs=inputs))
-    registry.methods.cache_clear()
+    stock(monkeypatch, registry._METHODS, noise_method(inputs=inputs))
     exemplar = as_exemplar(RAMP, name="ramp.png")
     for side, missing in ((8, False), (1000, True)):
         state = ArraysInput({"a": LARGE[:side, :side]}, "a state")

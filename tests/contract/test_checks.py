@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.contract.cases import IDS, METHODS
-from tests.core.toy import NoiseParams, noise_method
+from tests.core.toy import NoiseParams, noise_method, stock
 from texlab_core.contract import __main__ as command
 from texlab_core.contract.checking import Finding, check_method, checks, methods_of
 from texlab_core.contract.declarations import check_identity, check_knobs, check_refusals, check_round_trips
@@ -23,7 +23,7 @@ from texlab_core.engine.steps import Output, Step
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from texlab_core.engine.registry import Method
 
@@ -35,17 +35,12 @@ def test_our_own_methods_declare_what_they_should(method: Method, check: Callabl
 
 
 @pytest.fixture
-def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Method], Method]]:
-    registry.methods()
-    monkeypatch.setattr(registry, "_METHODS", {})
-
+def known(monkeypatch: pytest.MonkeyPatch) -> Callable[[Method], Method]:
     def add(method: Method) -> Method:
-        registry._METHODS[method.id] = method
-        registry.methods.cache_clear()
+        stock(monkeypatch, registry._METHODS, method, alone=True)
         return method
 
-    yield add
-    registry.methods.cache_clear()
+    return add
 
 
 def whole(**changes: Any) -> Method:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import texlab_core
-from tests.core.toy import NoiseParams, noise_method
+from tests.core.toy import NoiseParams, noise_method, stock
 from texlab_core.engine import registry
 from texlab_core.engine.inputs import DataInput
 from texlab_core.engine.job import Job
@@ -20,22 +20,16 @@ from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, ImageError, ParamError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from texlab_core.engine.steps import Step
 
 IMAGE = np.linspace(0, 1, 8 * 9, dtype=np.float32).reshape(8, 9)
 
 
 @pytest.fixture(autouse=True)
-def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    registry.methods()
-    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method())
+def toy(monkeypatch: pytest.MonkeyPatch) -> None:
     code = InputSpec("code", "Some numbers.", kind="data", required=False)
-    monkeypatch.setitem(registry._METHODS, "toy-pair", noise_method(id="toy-pair", inputs=(EXEMPLAR, code)))
-    registry.methods.cache_clear()
-    yield
-    registry.methods.cache_clear()
+    pair = noise_method(id="toy-pair", inputs=(EXEMPLAR, code))
+    stock(monkeypatch, registry._METHODS, noise_method(), pair)
 
 
 def test_one_line_equals_a_job() -> None:

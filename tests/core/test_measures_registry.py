@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 from test_measures_looks import pebbles
 
+from tests.core.toy import stock
 from texlab_core import measures as package
+from texlab_core.engine.plugins import Source
 from texlab_core.errors import Cancelled, ParamError
 from texlab_core.measures import registry
 from texlab_core.measures.registry import Measure, failures, find_measure, measure_all, measures
@@ -137,12 +139,12 @@ class Installed:
     """An entry point of a package."""
 
     def __init__(self, module: str, package: str) -> None:
-        self.value = module
+        self.module = module
         self.dist = type("Dist", (), {"name": package})()
 
 
 def test_measures_of_other_packages_are_found_named_and_isolated(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     declare = (
         "from texlab_core.measures.registry import Measure, register\n"
@@ -155,17 +157,17 @@ def test_measures_of_other_packages_are_found_named_and_isolated(
     points = [Installed("measures_that_fail", "bad-luck"), Installed("measures_of_others", "good-luck")]
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(
-        importlib.metadata, "entry_points", lambda group: points if group == registry.ENTRY_POINTS else []
+        importlib.metadata, "entry_points", lambda group: points if group == "texlab_core.measures" else []
     )
-    shelf = registry._Shelf()
     before = measures()
-    shelf.found = dict(before)
-    monkeypatch.setattr(registry, "_SHELF", shelf)
-    registry._discover.__wrapped__()
+    stock(monkeypatch, registry._MEASURES)
     found = measures()
     assert found["other-measure"].package == "good-luck"
     assert "half-done" not in found
-    assert [(each.package, each.module, each.reason) for each in shelf.failures] == [
-        ("bad-luck", "measures_that_fail", "no licence")
-    ]
+    (failure,) = failures()
+    assert failure.source == Source("bad-luck", "measures_that_fail")
+    assert failure.reason == "OSError: no licence"
+    assert caplog.messages == [failure.sentence]
     assert set(before) < set(found)
+    with pytest.raises(ParamError, match=r"what bad-luck adds could not be loaded\), got 'half-done'"):
+        find_measure("half-done")

@@ -9,14 +9,14 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
 
 import texlab_core
-from tests.core.toy import noise_method
+from tests.core.toy import noise_method, stock
 from texlab_core import progress as progress_module
 from texlab_core.engine import registry
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput
@@ -27,19 +27,12 @@ from texlab_core.errors import ImageError, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 IMAGE = np.linspace(0, 1, 40 * 30 * 3, dtype=np.float32).reshape(40, 30, 3)
 
 
 @pytest.fixture(autouse=True)
-def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    registry.methods()
-    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method())
-    registry.methods.cache_clear()
-    yield
-    registry.methods.cache_clear()
+def toy(monkeypatch: pytest.MonkeyPatch) -> None:
+    stock(monkeypatch, registry._METHODS, noise_method())
 
 
 def test_everything_with_arrays_has_a_short_repr() -> None:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from PIL import Image
 
-from tests.core.toy import NoiseParams, noise_method
+from tests.core.toy import NoiseParams, noise_method, stock
 from texlab_core.documents.embedding import MAX_EMBEDDED, pack_pixels, unpack_pixels
 from texlab_core.documents.recipe import recipe_json
 from texlab_core.documents.record import read_recipe, save_result, summary
@@ -42,12 +42,9 @@ INPUTS = (
 @pytest.fixture(autouse=True, scope="module")
 def method():
     """Register a small method for this module."""
-    registry.methods()
-    registry._METHODS[METHOD] = noise_method(id=METHOD, title="Toy recipe", inputs=INPUTS)
-    registry.methods.cache_clear()
-    yield
-    del registry._METHODS[METHOD]
-    registry.methods.cache_clear()
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        stock(monkeypatch, registry._METHODS, noise_method(id=METHOD, title="Toy recipe", inputs=INPUTS))
+        yield
 
 
 def noise(height=24, width=20, channels=3, seed=0):
@@ -482,12 +479,9 @@ def test_what_the_method_itself_refuses_is_one_sentence(monkeypatch):
 
     recipe = read(recipe_data())
     strict = replace(registry.find_method(METHOD), check=check)
-    monkeypatch.setitem(registry._METHODS, METHOD, strict)
-    registry.methods.cache_clear()
+    stock(monkeypatch, registry._METHODS, strict)
     with pytest.raises(RecipeError, match=r"^The recipe cannot be followed: Toy recipe wants another exemplar\.$"):
         recipe.job()
-    monkeypatch.undo()
-    registry.methods.cache_clear()
 
 
 def test_files_without_recipe(tmp_path):

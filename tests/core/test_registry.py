@@ -12,21 +12,17 @@ from typing import TYPE_CHECKING
 import pytest
 
 import texlab_core.methods
-from tests.core.toy import noise_method
+from tests.core.toy import noise_method, stock
 from texlab_core.engine import plugins, registry
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 
 @pytest.fixture
-def empty(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    registry.methods()
-    monkeypatch.setattr(registry, "_METHODS", {})
-    registry.methods.cache_clear()
-    yield
-    registry.methods.cache_clear()
+def empty(monkeypatch: pytest.MonkeyPatch) -> None:
+    stock(monkeypatch, registry._METHODS, alone=True)
 
 
 def test_every_file_that_registers_is_found() -> None:
@@ -88,7 +84,7 @@ def packages(empty: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ca
 
 
 GOOD = """
-from tests.core.toy import noise_method
+from tests.core.toy import noise_method, stock
 from texlab_core.engine.registry import register
 register(noise_method(id="good-noise", title="Good noise"))
 """
@@ -147,6 +143,15 @@ def test_a_file_of_our_own_that_cannot_be_imported_is_left_out(
     ]
     for name in [name for name in sys.modules if name.startswith("texlab_core.methods.folder")]:
         monkeypatch.delitem(sys.modules, name)
+
+
+def test_a_module_that_asks_while_it_is_imported_gets_what_there_is(packages: Callable[..., None]) -> None:
+    asking = "from texlab_core.engine.registry import failures, methods\n"
+    packages("texlab-good", GOOD)
+    later = GOOD.replace("good-noise", "later")
+    packages("texlab-later", f"{asking}found = dict(methods()), failures()\n{later}")
+    assert list(registry.methods()) == ["good-noise", "later"]
+    assert sys.modules["texlab_later"].found == ({"good-noise": registry.find_method("good-noise")}, ())
 
 
 def test_nothing_of_ours_is_broken() -> None:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.core.toy import Log, NoiseParams, noise_method
+from tests.core.toy import Log, NoiseParams, noise_method, stock
 from texlab_core.engine import registry
 from texlab_core.engine.cache import AnalysisCache, array_bytes
 from texlab_core.engine.inputs import DataInput, ImageInput
@@ -27,21 +27,15 @@ from texlab_core.version import __version__
 from texlab_core.work.threads import use_workers, workers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from texlab_core.engine.steps import Step
 
 
 @pytest.fixture
-def log(monkeypatch: pytest.MonkeyPatch) -> Iterator[Log]:
+def log(monkeypatch: pytest.MonkeyPatch) -> Log:
     """Register the toy method for one test."""
-    registry.methods()
     log = Log()
-    monkeypatch.setitem(registry._METHODS, "toy-noise", noise_method(log))
-    monkeypatch.setitem(registry._METHODS, "toy-pair", _pair_method())
-    registry.methods.cache_clear()
-    yield log
-    registry.methods.cache_clear()
+    stock(monkeypatch, registry._METHODS, noise_method(log), _pair_method())
+    return log
 
 
 def _pair_method() -> Any:

@@ -15,7 +15,18 @@ from texlab_core.engine.steps import Curve, Output, Step
 if TYPE_CHECKING:
     from collections.abc import Generator
 
+    import pytest
+
+    from texlab_core.engine.plugins import Entry, Shelf
     from texlab_core.engine.streams import Streams
+
+
+def stock(monkeypatch: pytest.MonkeyPatch, shelf: Shelf[Any], *entries: Entry, alone: bool = False) -> None:
+    """Put entries on a shelf for one test, beside what is there or alone; other packages are looked for anew."""
+    there = shelf.all()
+    monkeypatch.setattr(shelf, "_entries", ({} if alone else dict(there)) | {each.id: each for each in entries})
+    monkeypatch.setattr(shelf, "_ordered", None)
+    monkeypatch.setattr(shelf, "_failures", None)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,6 +14,7 @@ from dock_scenes import column_of, feed
 
 import texlab_core.measures
 import texlab_core.methods
+from tests.core.toy import stock
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, shown_image
 from texlab.state.intentions import Pin
@@ -40,25 +41,19 @@ def example(after: str) -> str:
 @pytest.fixture
 def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Put a file beside those of a package and load it."""
-    registry.methods()
-    measures_registry.measures()
-    monkeypatch.setattr(registry, "_METHODS", dict(registry._METHODS))
-    monkeypatch.setattr(measures_registry._SHELF, "found", dict(measures_registry._SHELF.found))
+    for shelf in (registry._METHODS, measures_registry._MEASURES):
+        stock(monkeypatch, shelf)
     loaded: list[str] = []
 
     def load(package: Any, name: str, code: str) -> Any:
         (tmp_path / f"{name}.py").write_text(code, encoding="utf-8")
         monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
         loaded.append(f"{package.__name__}.{name}")
-        made = importlib.import_module(loaded[-1])
-        registry.methods.cache_clear()
-        return made
+        return importlib.import_module(loaded[-1])
 
     yield load
     for each in loaded:
         sys.modules.pop(each, None)
-    monkeypatch.undo()
-    registry.methods.cache_clear()
 
 
 def test_the_method_keeps_every_promise(module: Any) -> None:

@@ -15,16 +15,35 @@ import importlib
 import importlib.metadata
 import logging
 import pkgutil
+import threading
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+from texlab_core.errors import ParamError
+from texlab_core.files.wording import did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, MutableMapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping
 
 log = logging.getLogger(__name__)
 
 OWN_PACKAGE = "texlab"
-EntryT = TypeVar("EntryT")
+
+
+class Entry(Protocol):
+    """What can be registered."""
+
+    @property
+    def id(self) -> str:
+        """Its name, used once."""
+
+    @property
+    def order(self) -> int:
+        """Its place in lists."""
+
+
+EntryT = TypeVar("EntryT", bound=Entry)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,3 +142,91 @@ def load(
         log.info("%s", failure.sentence, exc_info=error)
         return failure
     return None
+
+
+class Shelf(Generic[EntryT]):
+    """Everything of one kind that modules register; they are imported when it is first asked for.
+
+    Parameters
+    ----------
+    kind
+        What users call an entry ("method"). Entry points of the group ``texlab_core.methods`` name the modules of
+        other packages.
+    own
+        ``own()`` returns our own modules.
+    accept
+        As of :func:`load`.
+    warn
+        Whether what cannot be used is logged as a warning; not where everybody who lists the entries tells it.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        own: Callable[[], Iterable[Source]],
+        accept: Callable[[EntryT, str], EntryT] | None = None,
+        *,
+        warn: bool = True,
+    ) -> None:
+        self._kind = kind
+        self._own = own
+        self._accept = accept
+        self._warn = warn
+        self._entries: dict[str, EntryT] = {}
+        # None until the modules were imported.
+        self._failures: tuple[Failure, ...] | None = None
+        self._ordered: Mapping[str, EntryT] | None = None
+        self._filling = False
+        self._lock = threading.RLock()
+
+    def add(self, entry: EntryT) -> EntryT:
+        """Add an entry; a second one with the same id is a programming error."""
+        # Without the lock: whoever imports the module holds the lock of the import, for which the shelf may wait.
+        if entry.id in self._entries:
+            raise RuntimeError(f"A {type(entry).__name__.lower()} with the id {entry.id!r} is registered already.")
+        self._entries[entry.id] = entry
+        self._ordered = None
+        return entry
+
+    def all(self) -> Mapping[str, EntryT]:
+        """Return every entry by id, in their order."""
+        found = self._ordered
+        if found is None:
+            with self._lock:
+                self._fill()
+                ordered = sorted(self._entries.values(), key=lambda entry: (entry.order, entry.id))
+                found = MappingProxyType({entry.id: entry for entry in ordered})
+                # A module that asks while it is imported gets what there is until then.
+                self._ordered = None if self._filling else found
+        return found
+
+    def failures(self) -> tuple[Failure, ...]:
+        """Return what could not be used, of our own and of other packages."""
+        with self._lock:
+            self._fill()
+            return self._failures or ()
+
+    def find(self, name: str) -> EntryT:
+        """Return the entry with this id; raises ``ParamError`` with the ids that there are."""
+        known = self.all()
+        if isinstance(name, str) and name in known:
+            return known[name]
+        close = did_you_mean(name, known)
+        hint = f" ({close})" if close else ""
+        if broken := sorted({failure.source.package for failure in self.failures()}):
+            hint += f" (what {' and '.join(broken)} adds could not be loaded)"
+        raise ParamError(self._kind, f"one of {', '.join(known)}{hint}", name)
+
+    def _fill(self) -> None:
+        if self._failures is not None or self._filling:
+            return
+        self._filling = True
+        what = f"{self._kind}s"
+        try:
+            sources = (*self._own(), *entry_points(f"texlab_core.{what}"))
+            tried = [load(source, self._entries, self._accept, what=what) for source in sources]
+        finally:
+            self._filling = False
+        self._failures = tuple(each for each in tried if each is not None)
+        for failure in self._failures if self._warn else ():
+            log.warning("%s", failure.sentence)

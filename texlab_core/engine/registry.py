@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
-import functools
 import importlib.util
 import pkgutil
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from texlab_core.engine.params import describe
-from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Source, entry_points, load, own_modules
+from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Shelf, Source, own_modules
 from texlab_core.engine.steps import FloatImage, Output, Step
-from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -124,40 +120,6 @@ class Method:
     package: str = OWN_PACKAGE
 
 
-ENTRY_POINTS = "texlab_core.methods"
-_METHODS: dict[str, Method] = {}
-_FAILURES: list[Failure] = []
-
-
-def register(method: Method) -> Method:
-    """Add a method; a second one with the same id is a programming error."""
-    if method.id in _METHODS:
-        raise RuntimeError(f"A method with the id {method.id!r} is registered already.")
-    _METHODS[method.id] = method
-    return method
-
-
-@functools.cache
-def methods() -> Mapping[str, Method]:
-    """Return every registered method by id, in their order; imports what declares them once.
-
-    These are the files and folders of ``methods/``, then the modules that other installed packages name as entry
-    points of the group ``texlab_core.methods``. What cannot be used is left out; :func:`failures` says why.
-    """
-    tried = [
-        load(source, _METHODS, _accepted, what="methods") for source in (*_own(), *entry_points(ENTRY_POINTS))
-    ]
-    _FAILURES[:] = [each for each in tried if each is not None]
-    ordered = sorted(_METHODS.values(), key=lambda method: (method.order, method.id))
-    return MappingProxyType({method.id: method for method in ordered})
-
-
-def failures() -> tuple[Failure, ...]:
-    """Return what could not be used, of our own and of other packages."""
-    methods()
-    return tuple(_FAILURES)
-
-
 def _own() -> Iterator[Source]:
     package = "texlab_core.methods"
     for source in own_modules(package):
@@ -179,6 +141,28 @@ def _accepted(method: Method, package: str) -> Method:
     return replace(method, title=f"{method.title} ({package})", package=package)
 
 
+_METHODS = Shelf("method", _own, _accepted, warn=False)
+
+
+def register(method: Method) -> Method:
+    """Add a method; a second one with the same id is a programming error."""
+    return _METHODS.add(method)
+
+
+def methods() -> Mapping[str, Method]:
+    """Return every registered method by id, in their order; imports what declares them once.
+
+    These are the files and folders of ``methods/``, then the modules that other installed packages name as entry
+    points of the group ``texlab_core.methods``. What cannot be used is left out; :func:`failures` says why.
+    """
+    return _METHODS.all()
+
+
+def failures() -> tuple[Failure, ...]:
+    """Return what could not be used, of our own and of other packages."""
+    return _METHODS.failures()
+
+
 def find_method(name: str) -> Method:
     """Return the method with this id.
 
@@ -187,11 +171,4 @@ def find_method(name: str) -> Method:
     ParamError
         When there is none; the message lists the ids.
     """
-    known = methods()
-    if isinstance(name, str) and name in known:
-        return known[name]
-    close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    if broken := sorted({failure.source.package for failure in failures()}):
-        hint += f" (what {' and '.join(broken)} adds could not be loaded)"
-    raise ParamError("method", f"one of {', '.join(known)}{hint}", name)
+    return _METHODS.find(name)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
-import functools
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from texlab_core.engine.plugins import OWN_PACKAGE, Failure, entry_points, load, own_modules
-from texlab_core.errors import ParamError
+from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Shelf, own_modules
 from texlab_core.findings.finding import LOOK_AT, Finding, Remedy, Where
 from texlab_core.findings.limits import rule_for
 from texlab_core.measures.registry import find_measure
@@ -22,8 +18,6 @@ if TYPE_CHECKING:
     from texlab_core.findings.limits import Rule
     from texlab_core.measures.subject import Subject
 
-# Installed packages add detectors of their own by entry points of this group; each names a module.
-ENTRY_POINTS = "texlab_core.findings"
 OTHER = ""
 # Smaller pictures and exemplars are not examined: limits come from sides of 128 and 256 pixels.
 SMALLEST = 32
@@ -156,43 +150,33 @@ class Detector:
         return Remedy("No parameter of this method helps; try another one beside it.")
 
 
-_DETECTORS: dict[str, Detector] = {}
-_FAILURES: list[Failure] = []
+def _accepted(detector: Detector, package: str) -> Detector:
+    """Return a detector with its package; raises ``ParamError`` when it rests on a measure that does not exist."""
+    for each in detector.measures:
+        find_measure(each)
+    return replace(detector, package=package)
+
+
+_DETECTORS = Shelf("finding", lambda: own_modules("texlab_core.findings.detectors"), _accepted)
 
 
 def register(detector: Detector) -> Detector:
     """Add a detector; a second one with the same id is a programming error."""
-    if detector.id in _DETECTORS:
-        raise RuntimeError(f"A detector with the id {detector.id!r} is registered already.")
-    _DETECTORS[detector.id] = detector
-    return detector
+    return _DETECTORS.add(detector)
 
 
-@functools.cache
 def detectors() -> Mapping[str, Detector]:
     """Return every detector by id, in their order; imports what declares them once.
 
     These are the files of ``findings/detectors/``, then the modules that other installed packages name as entry
     points of the group ``texlab_core.findings``. What cannot be used is left out; :func:`failures` says why.
     """
-    sources = (*own_modules("texlab_core.findings.detectors"), *entry_points(ENTRY_POINTS))
-    tried = [load(source, _DETECTORS, _accepted, what="findings") for source in sources]
-    _FAILURES[:] = [each for each in tried if each is not None]
-    ordered = sorted(_DETECTORS.values(), key=lambda detector: (detector.order, detector.id))
-    return MappingProxyType({detector.id: detector for detector in ordered})
+    return _DETECTORS.all()
 
 
 def failures() -> tuple[Failure, ...]:
     """Return what could not be used, of our own and of other packages."""
-    detectors()
-    return tuple(_FAILURES)
-
-
-def _accepted(detector: Detector, package: str) -> Detector:
-    """Return a detector with its package; raises ``ParamError`` when it rests on a measure that does not exist."""
-    for each in detector.measures:
-        find_measure(each)
-    return replace(detector, package=package)
+    return _DETECTORS.failures()
 
 
 def find_detector(name: str) -> Detector:
@@ -203,12 +187,7 @@ def find_detector(name: str) -> Detector:
     ParamError
         When there is none; the message lists the ids.
     """
-    known = detectors()
-    if isinstance(name, str) and name in known:
-        return known[name]
-    close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    raise ParamError("finding", f"one of {', '.join(known)}{hint}", name)
+    return _DETECTORS.find(name)
 
 
 def find_all(subject: Subject, params: Params | None = None, method: str | None = None) -> tuple[Finding, ...]:

@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import difflib
-import functools
-import importlib
-import importlib.metadata
-import logging
 import math
-import pkgutil
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Shelf, own_modules
 from texlab_core.engine.registry import methods
-from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from texlab_core.measures.subject import Subject
 
-log = logging.getLogger(__name__)
-
 Better = Literal["lower", "higher", "neither"]
 Need = Literal["exemplar", "source", "counts", "curves", "model", "method"]
-# Installed packages add measures of their own by entry points of this group; each names a module.
-ENTRY_POINTS = "texlab_core.measures"
-OWN_PACKAGE = "texlab"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,86 +106,32 @@ class Measure:
         return f"{written} {self.unit}" if self.unit else written
 
 
-@dataclass(frozen=True)
-class Failure:
-    """A measure that could not be loaded.
-
-    Parameters
-    ----------
-    package
-        The installed package that it comes from.
-    module
-        What was to be imported.
-    reason
-        The error, one line.
-    """
-
-    package: str
-    module: str
-    reason: str
+def _accepted(measure: Measure, package: str) -> Measure:
+    return replace(measure, package=package)
 
 
-class _Shelf:
-    """What was registered so far, and by whom the next ones are."""
-
-    def __init__(self) -> None:
-        self.found: dict[str, Measure] = {}
-        self.failures: list[Failure] = []
-
-
-_SHELF = _Shelf()
+_MEASURES = Shelf("measure", lambda: own_modules("texlab_core.measures"), _accepted)
 
 
 def register(measure: Measure) -> Measure:
     """Add a measure; a second one with the same id is a programming error."""
-    if measure.id in _SHELF.found:
-        raise RuntimeError(f"A measure with the id {measure.id!r} is registered already.")
-    _SHELF.found[measure.id] = measure
-    return measure
+    return _MEASURES.add(measure)
 
 
 def measures() -> Mapping[str, Measure]:
     """Return every registered measure by id, in their order.
 
     All files of ``measures/`` are imported, then those of other packages that have an entry point of the group
-    ``texlab_core.measures``, and the methods, which declare what only they can say. What cannot be imported is
-    left out, logged and listed by :func:`failures`.
+    ``texlab_core.measures``, and the methods, which declare what only they can say. What cannot be used is left
+    out; :func:`failures` says why.
     """
-    _discover()
-    ordered = sorted(_SHELF.found.values(), key=lambda measure: (measure.order, measure.id))
-    return MappingProxyType({measure.id: measure for measure in ordered})
-
-
-@functools.cache
-def _discover() -> None:
-    package = importlib.import_module("texlab_core.measures")
-    for each in pkgutil.iter_modules(package.__path__):
-        if not each.name.startswith("_"):
-            _load(OWN_PACKAGE, f"{package.__name__}.{each.name}")
-    for point in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda point: point.value):
-        _load(point.dist.name if point.dist is not None else point.value, point.value)
     methods()
+    return _MEASURES.all()
 
 
 def failures() -> tuple[Failure, ...]:
-    """Return what could not be loaded."""
-    _discover()
-    return tuple(_SHELF.failures)
-
-
-def _load(package: str, module: str) -> None:
-    """Import a module; what it registered before it failed is taken back."""
-    before = dict(_SHELF.found)
-    try:
-        importlib.import_module(module.partition(":")[0])
-    except Exception as error:
-        _SHELF.found = before
-        reason = " ".join(str(error).split()) or type(error).__name__
-        _SHELF.failures.append(Failure(package, module, reason))
-        log.warning("Measures of %s are left out: %s cannot be loaded (%s).", package, module, reason)
-        return
-    for name in _SHELF.found.keys() - before.keys():
-        object.__setattr__(_SHELF.found[name], "package", package)
+    """Return what could not be used, of our own and of other packages."""
+    return _MEASURES.failures()
 
 
 def find_measure(name: str) -> Measure:
@@ -208,12 +142,8 @@ def find_measure(name: str) -> Measure:
     ParamError
         When there is none; the message lists the ids.
     """
-    known = measures()
-    if isinstance(name, str) and name in known:
-        return known[name]
-    close = difflib.get_close_matches(str(name), known, n=1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    raise ParamError("measure", f"one of {', '.join(known)}{hint}", name)
+    methods()
+    return _MEASURES.find(name)
 
 
 def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str, float]:
