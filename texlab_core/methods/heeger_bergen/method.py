@@ -6,7 +6,7 @@ sections 11.2 and 11.3.2.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
@@ -17,8 +17,9 @@ from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Curve, Output, Step
 from texlab_core.methods.heeger_bergen import analysis
+from texlab_core.methods.heeger_bergen.knobs import BORDER, ITERATIONS, ORIENTATIONS, SCALES
 from texlab_core.methods.heeger_bergen.palette import transport_palette
-from texlab_core.methods.heeger_bergen.rounds import Plan, match, match_round, measure
+from texlab_core.methods.heeger_bergen.rounds import Matching, Plan, match, match_round, measure
 from texlab_core.transforms.colour import interleave
 from texlab_core.work.tasks import Pace, crew, finish, row_blocks
 
@@ -47,19 +48,9 @@ UNITS = 100
 class HeegerBergenParams(Params):
     """Parameters of Heeger and Bergen's method."""
 
-    iterations: Annotated[
-        int,
-        Knob(
-            help="Rounds of matching all subbands, then the pixels; 0 leaves noise of the exemplar's colours.",
-            low=0,
-            high=50,
-            linear_to=10,
-            group="Synthesis",
-            source="Heeger and Bergen 1995, section 2.3",
-        ),
-    ] = 5
+    iterations: Annotated[int, ITERATIONS] = 5
     matching: Annotated[
-        Literal["exact", "bins"],
+        Matching,
         Knob(
             help="How a histogram is given to a subband.",
             choices={
@@ -103,7 +94,7 @@ class HeegerBergenParams(Params):
         ),
     ] = 16
     pyramid: Annotated[
-        Literal["steerable", "laplacian", "textbook"],
+        analysis.Pyramid,
         Knob(
             help="The subbands whose histograms are matched.",
             choices={
@@ -116,30 +107,17 @@ class HeegerBergenParams(Params):
             source="Heeger and Bergen 1995, section 2.1",
         ),
     ] = "steerable"
-    scales: Annotated[
-        int,
-        Knob(
-            help="Levels of the pyramid; structure larger than about 2^scales pixels is lost.",
-            low=0,
-            high=8,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 4
+    scales: Annotated[int, SCALES] = 4
     orientations: Annotated[
         int,
-        Knob(
-            help="Oriented bands at each level.",
-            low=1,
-            high=18,
-            stage="analysis",
-            group="Pyramid",
+        replace(
+            ORIENTATIONS,
             source="Forsyth and Ponce, chapter 11, assignment b",
             when=("pyramid", ("steerable",)),
         ),
     ] = 4
     odd_sides: Annotated[
-        Literal["spread", "doubled"],
+        analysis.OddSides,
         Knob(
             help="How a Laplacian pyramid halves an odd side of an image that wraps around.",
             choices={
@@ -152,20 +130,7 @@ class HeegerBergenParams(Params):
             group="Pyramid",
         ),
     ] = "spread"
-    border: Annotated[
-        Literal["reflect", "periodic", "wrap"],
-        Knob(
-            help="How the exemplar is taken to go on beyond its borders.",
-            choices={
-                "reflect": "mirrored",
-                "periodic": "repeated, without the smooth part that makes it jump at the borders",
-                "wrap": "repeated as it is: jumps at the borders look like texture",
-            },
-            stage="analysis",
-            group="Pyramid",
-            source="Heeger and Bergen 1995, section 2.4",
-        ),
-    ] = "reflect"
+    border: Annotated[analysis.Border, BORDER] = "reflect"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal, NamedTuple
 
 from texlab_core.engine.params import Knob, Params
+from texlab_core.methods.heeger_bergen.analysis import Border
+from texlab_core.methods.heeger_bergen.knobs import BORDER, ITERATIONS, ORIENTATIONS, SCALES
 
 Kind = Literal["average", "palette", "start", "scales"]
+
+
+def _share(name: str) -> Knob:
+    """Return the knob of a further exemplar's share."""
+    return Knob(
+        help=f"Share of the input {name}, where one is given; the others share the rest.",
+        low=0.0,
+        high=1.0,
+        step=0.05,
+        group="Mixture",
+        when=("kind", ("average",)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +39,7 @@ class MixtureParams(Params):
         ),
     ] = 0.5
     kind: Annotated[
-        Literal["average", "palette", "start", "scales"],
+        Kind,
         Knob(
             help="What is mixed; the mixture in full is at weight 0.5.",
             choices={
@@ -48,71 +62,27 @@ class MixtureParams(Params):
             when=("kind", ("scales",)),
         ),
     ] = 2
-    third: Annotated[
-        float,
-        Knob(
-            help="Share of the input third, where one is given; the others share the rest.",
-            low=0.0,
-            high=1.0,
-            step=0.05,
-            group="Mixture",
-            when=("kind", ("average",)),
-        ),
-    ] = 0.0
-    fourth: Annotated[
-        float,
-        Knob(
-            help="Share of the input fourth, where one is given; the others share the rest.",
-            low=0.0,
-            high=1.0,
-            step=0.05,
-            group="Mixture",
-            when=("kind", ("average",)),
-        ),
-    ] = 0.0
+    third: Annotated[float, _share("third")] = 0.0
+    fourth: Annotated[float, _share("fourth")] = 0.0
     iterations: Annotated[
         int,
-        Knob(
+        replace(
+            ITERATIONS,
             help="Rounds of matching all subbands, then the pixels; 1 is often enough for the kind start.",
-            low=0,
-            high=50,
-            linear_to=10,
-            group="Synthesis",
-            source="Heeger and Bergen 1995, section 2.3",
         ),
     ] = 5
-    scales: Annotated[
-        int,
-        Knob(
-            help="Levels of the pyramid; structure larger than about 2^scales pixels is lost.",
-            low=0,
-            high=8,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 4
-    orientations: Annotated[
-        int,
-        Knob(
-            help="Oriented bands at each level.",
-            low=1,
-            high=18,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 4
+    scales: Annotated[int, SCALES] = 4
+    orientations: Annotated[int, ORIENTATIONS] = 4
     border: Annotated[
-        Literal["reflect", "periodic", "wrap"],
-        Knob(
+        Border,
+        replace(
+            BORDER,
             help="How the exemplars are taken to go on beyond their borders.",
             choices={
                 "reflect": "mirrored",
                 "periodic": "repeated, without the smooth part that makes them jump at the borders",
                 "wrap": "repeated as they are: jumps at the borders look like texture",
             },
-            stage="analysis",
-            group="Pyramid",
-            source="Heeger and Bergen 1995, section 2.4",
         ),
     ] = "reflect"
 

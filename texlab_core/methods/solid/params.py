@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from texlab_core.engine.params import Knob, Params
+from texlab_core.methods.heeger_bergen.analysis import Border
+from texlab_core.methods.heeger_bergen.knobs import BORDER, ITERATIONS, ORIENTATIONS, SCALES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,13 +16,10 @@ class SolidParams(Params):
 
     iterations: Annotated[
         int,
-        Knob(
+        replace(
+            ITERATIONS,
             help="Rounds of matching all subbands, then the voxels; 0 leaves noise of the exemplar's colours.",
-            low=0,
             high=20,
-            linear_to=10,
-            group="Synthesis",
-            source="Heeger and Bergen 1995, section 2.3",
         ),
     ] = 5
     histograms: Annotated[
@@ -51,36 +50,12 @@ class SolidParams(Params):
     ] = "laplacian"
     scales: Annotated[
         int,
-        Knob(
-            help="Levels of the pyramids; structure larger than about 2^scales voxels is lost.",
-            low=0,
-            high=7,
-            stage="analysis",
-            group="Pyramid",
+        replace(
+            SCALES, help="Levels of the pyramids; structure larger than about 2^scales voxels is lost.", high=7
         ),
     ] = 4
     orientations: Annotated[
         int,
-        Knob(
-            help="Oriented bands at each level of the slices.",
-            low=1,
-            high=18,
-            stage="analysis",
-            group="Pyramid",
-            when=("kind", ("mixed",)),
-        ),
+        replace(ORIENTATIONS, help="Oriented bands at each level of the slices.", when=("kind", ("mixed",))),
     ] = 4
-    border: Annotated[
-        Literal["reflect", "periodic", "wrap"],
-        Knob(
-            help="How the exemplar is taken to go on beyond its borders.",
-            choices={
-                "reflect": "mirrored",
-                "periodic": "repeated, without the smooth part that makes it jump at the borders",
-                "wrap": "repeated as it is: jumps at the borders look like texture",
-            },
-            stage="analysis",
-            group="Pyramid",
-            source="Heeger and Bergen 1995, section 2.4",
-        ),
-    ] = "reflect"
+    border: Annotated[Border, BORDER] = "reflect"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from texlab_core.work.tasks import Task
 
 Volume = NDArray[np.float32]
-Kind = Literal["laplacian", "mixed"]
 
 # Which axes of a solid (depth, height, width) become slices, rows and columns, by the plane of the slices.
 CUTS = {"xy": (0, 1, 2), "xz": (1, 0, 2), "yz": (2, 0, 1)}
