@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.de_bonet.channels import Channels, planes_of
-from texlab_core.methods.de_bonet.features import FeatureKind, FilterSet, feature_list
-from texlab_core.methods.de_bonet.fitting import ExemplarBorder, Fitting, choose_depth, fit
+from texlab_core.methods.de_bonet.channels import planes_of
+from texlab_core.methods.de_bonet.features import FeatureKind, feature_list
+from texlab_core.methods.de_bonet.fitting import choose_depth, fit
 from texlab_core.methods.de_bonet.seams import Seams
 from texlab_core.work.tasks import row_bounds, through
 
@@ -18,12 +18,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from texlab_core.methods.de_bonet.choices import Channels, ExemplarBorder, FilterSet, Fitting, Normalization
     from texlab_core.methods.de_bonet.features import Feature
     from texlab_core.methods.de_bonet.quadtree import Grid
     from texlab_core.transforms.gaussian import Border
     from texlab_core.transforms.oriented import Order
-
-Normalization = Literal["variance", "level", "range", "sum", "printed"]
 
 # Features that vary by less than this are constant up to rounding; images live in [0, 1].
 _CONSTANT = 1e-6

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from texlab_core.transforms.luma import LUMA, luma
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Channels = Literal["all", "scaled", "principal", "luminance"]
+    from texlab_core.methods.de_bonet.choices import Channels
 
 # Colour axes with less than this share of the variance constrain nothing.
 _LEAST_SHARE = 0.05

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from texlab_core.methods.de_bonet.choices import FilterSet
+
 FeatureKind = Literal["laplacian", "first", "second", "residual", "oriented"]
-FilterSet = Literal["both", "first", "second", "laplacian"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,7 @@ from texlab_core.transforms.fourier import periodic_component
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Fitting = Literal["pad", "crop"]
-ExemplarBorder = Literal["reflect", "periodic", "smooth"]
+    from texlab_core.methods.de_bonet.choices import ExemplarBorder, Fitting
 
 # Padding or cropping may change the area by at most this share; beyond it the pyramid gets fewer levels.
 LARGEST_LOSS = 0.15

@@ -14,7 +14,7 @@ import heapq
 import itertools
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -24,10 +24,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.streams import Streams
+    from texlab_core.methods.de_bonet.choices import Coarsest
     from texlab_core.methods.de_bonet.quadtree import Grid
     from texlab_core.methods.de_bonet.seams import Seams
-
-Coarsest = Literal["patches", "fit", "shift", "tile", "iid"]
 
 # Places that are compared for one patch.
 _MOST_PLACES = 512

@@ -8,6 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Method, register
+from texlab_core.methods.de_bonet.choices import (
+    COARSEST_SIDE,
+    FITTING,
+    Channels,
+    Coarsest,
+    ExemplarBorder,
+    FilterSet,
+    Fitting,
+    Normalization,
+)
 from texlab_core.methods.de_bonet.thresholds import MAX_K, ThresholdTable
 
 if TYPE_CHECKING:
@@ -78,7 +88,7 @@ class DeBonetParams(Params):
         ),
     ] = 1
     coarsest: Annotated[
-        Literal["patches", "fit", "shift", "tile", "iid"],
+        Coarsest,
         Knob(
             help="How the coarsest level is laid out; all but patches only in outputs larger than the exemplar.",
             choices={
@@ -136,24 +146,13 @@ class DeBonetParams(Params):
             group="Layout",
         ),
     ] = "fewer"
-    coarsest_side: Annotated[
-        int,
-        Knob(
-            help="Smallest side of the coarsest level.",
-            low=1,
-            high=64,
-            unit="px",
-            log=True,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 8
+    coarsest_side: Annotated[int, COARSEST_SIDE] = 8
     fit_filters: Annotated[
         bool,
         Knob(help="Stop the pyramid where the filters no longer fit.", stage="analysis", group="Pyramid"),
     ] = True
     border: Annotated[
-        Literal["reflect", "periodic", "smooth"],
+        ExemplarBorder,
         Knob(
             help="How the pyramid sees the exemplar beyond its border.",
             stage="analysis",
@@ -165,19 +164,7 @@ class DeBonetParams(Params):
             group="Pyramid",
         ),
     ] = "reflect"
-    fitting: Annotated[
-        Literal["pad", "crop"],
-        Knob(
-            help="How the sides of the exemplar become multiples of 2^N, N the number of halvings.",
-            stage="analysis",
-            choices={
-                "pad": "goes on below and on the right as the border says; nothing is lost",
-                "crop": "reduced to its centre",
-            },
-            formerly="crop",
-            group="Pyramid",
-        ),
-    ] = "pad"
+    fitting: Annotated[Fitting, FITTING] = "pad"
     pyramid: Annotated[
         Literal["laplacian", "steerable"],
         Knob(
@@ -206,7 +193,7 @@ class DeBonetParams(Params):
         ),
     ] = 4
     filters: Annotated[
-        Literal["both", "first", "second", "laplacian"],
+        FilterSet,
         Knob(
             help="Features of a parent structure beside its Laplacian bands.",
             stage="analysis",
@@ -245,7 +232,7 @@ class DeBonetParams(Params):
         ),
     ] = 5
     channels: Annotated[
-        Literal["all", "scaled", "principal", "luminance"],
+        Channels,
         Knob(
             help="Which channels constrain; colours always move together.",
             stage="analysis",
@@ -259,7 +246,7 @@ class DeBonetParams(Params):
         ),
     ] = "all"
     normalization: Annotated[
-        Literal["variance", "level", "range", "sum", "printed"],
+        Normalization,
         Knob(
             help="What squared feature differences are divided by, Z.",
             stage="analysis",

@@ -11,6 +11,7 @@ from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Method, register
 from texlab_core.engine.steps import Output
+from texlab_core.methods.de_bonet.choices import COARSEST_SIDE, FITTING, Fitting
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -30,18 +31,7 @@ _DRAWN_AT_ONCE = 2**18
 class BandsParams(Params):
     """Parameters of independent bands."""
 
-    coarsest_side: Annotated[
-        int,
-        Knob(
-            help="Smallest side of the coarsest level.",
-            low=1,
-            high=64,
-            unit="px",
-            log=True,
-            stage="analysis",
-            group="Pyramid",
-        ),
-    ] = 4
+    coarsest_side: Annotated[int, COARSEST_SIDE] = 4
     border: Annotated[
         Literal["reflect", "periodic"],
         Knob(
@@ -51,19 +41,7 @@ class BandsParams(Params):
             group="Pyramid",
         ),
     ] = "reflect"
-    fitting: Annotated[
-        Literal["pad", "crop"],
-        Knob(
-            help="How the sides of the exemplar become multiples of 2^N, N the number of halvings.",
-            stage="analysis",
-            choices={
-                "pad": "goes on below and on the right as the border says; nothing is lost",
-                "crop": "reduced to its centre",
-            },
-            formerly="crop",
-            group="Pyramid",
-        ),
-    ] = "pad"
+    fitting: Annotated[Fitting, FITTING] = "pad"
 
 
 def check(inputs: Inputs, params: BandsParams, size: tuple[int, int]) -> None:

@@ -20,10 +20,10 @@ import numpy as np
 
 from texlab_core.engine.steps import Step
 from texlab_core.errors import InputError
-from texlab_core.methods.de_bonet.analysis import Analysis, Normalization, finish_level
-from texlab_core.methods.de_bonet.channels import Channels, planes_of
+from texlab_core.methods.de_bonet.analysis import Analysis, finish_level
+from texlab_core.methods.de_bonet.channels import planes_of
 from texlab_core.methods.de_bonet.features import Feature
-from texlab_core.methods.de_bonet.fitting import ExemplarBorder, Fitting, fit
+from texlab_core.methods.de_bonet.fitting import fit
 from texlab_core.methods.de_bonet.growth import total_work, visible, visible_steps
 from texlab_core.methods.de_bonet.seams import Seams
 from texlab_core.transforms import steerable
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.methods.de_bonet.choices import Channels, ExemplarBorder, Fitting, Normalization
     from texlab_core.methods.de_bonet.quadtree import Grid
     from texlab_core.methods.de_bonet.sampling import Progress
 
