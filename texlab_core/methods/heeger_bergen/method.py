@@ -8,23 +8,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import Method, register
-from texlab_core.engine.steps import Curve, Output, Step
+from texlab_core.engine.steps import Output, Step
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.knobs import BORDER, ITERATIONS, ORIENTATIONS, SCALES
 from texlab_core.methods.heeger_bergen.palette import transport_palette
 from texlab_core.methods.heeger_bergen.rounds import Matching, Plan, match, match_round, measure
+from texlab_core.methods.heeger_bergen.staged import Staged, distance_curve, mean
 from texlab_core.transforms.colour import interleave
 from texlab_core.work.tasks import Pace, crew, finish, row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Sequence
 
     from numpy.typing import NDArray
 
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
     from texlab_core.methods.heeger_bergen.analysis import TextureModel
     from texlab_core.transforms.steerable import BandKey
     from texlab_core.work.tasks import Crew, Task
-
-ReturnT = TypeVar("ReturnT")
 
 # Samples worked through between two steps: below 1 ms, or 15 ms in planes too large for the cache memory.
 STRIDE = 2**15
@@ -191,7 +190,7 @@ def synthesize(
     return run.output(image)
 
 
-class _Run:
+class _Run(Staged):
     """State of one synthesis."""
 
     def __init__(
@@ -204,6 +203,17 @@ class _Run:
         team: Crew,
         begin: Callable[[int, NDArray[np.float32]], Task[None]] | None = None,
     ) -> None:
+        axes = len(model.planes)
+        super().__init__(
+            axes,
+            # One round on one axis is a stage, a turn of the palette is half a stage.
+            params.iterations * max(axes, 1),
+            1 + (params.palette_rounds // 2 if params.palette == "transport" else 0),
+            # Every sample of every band is transformed, matched and transformed back.
+            size[0] * size[1] * (4 * params.orientations + 4),
+            units=UNITS,
+            stride=STRIDE,
+        )
         self.begin = begin
         self.model, self.inputs, self.params, self.size = model, inputs, params, size
         self.streams, self.team = streams, team
@@ -211,15 +221,9 @@ class _Run:
         around = analysis.around(params.odd_sides)
         self.plan = Plan(params.pyramid, levels, params.orientations, params.matching, around)
         self.keys = self.plan.keys
-        self.planes: list[NDArray[np.float32]] = []
         self.image: FloatImage | None = None
-        axes = len(model.planes)
         self.distances = np.zeros((params.iterations + 1, axes, len(self.keys)))
         self.final = self.distances[-1]
-        self.pace = Pace(STRIDE)
-        # A stage is the start, one round on one axis, or all that follows; a turn of the palette is half a stage.
-        self.rounds, self.stage, self.samples = params.iterations * max(axes, 1), 0, 0
-        self.stages = self.rounds + 2 + (params.palette_rounds // 2 if params.palette == "transport" else 0)
 
     def start(self) -> Generator[Step, None, None]:
         """Make noise with the exemplar's pixel values on each axis."""
@@ -246,7 +250,7 @@ class _Run:
             self.planes[axis], self.distances[iteration, axis] = yield from self._steps(work, stage)
             self._next_stage()
         yield self._step(
-            stage, {"mean-distance": _mean(self.distances[iteration])}, frame=f"iteration {iteration + 1}"
+            stage, {"mean-distance": mean(self.distances[iteration])}, frame=f"iteration {iteration + 1}"
         )
 
     def finish(self) -> Generator[Step, None, FloatImage]:
@@ -261,9 +265,8 @@ class _Run:
             self.final = yield from self._measure(
                 (yield from self._steps(self.model.axes.to_axes_task(image), "distances"))
             )
-        self.stage = self.stages - 1
-        self._next_stage()
-        yield self._step("done", {"mean-distance": _mean(self.distances[-1])})
+        self._end_stages()
+        yield self._step("done", {"mean-distance": mean(self.distances[-1])})
         return image
 
     def _measure(
@@ -292,12 +295,11 @@ class _Run:
 
     def output(self, image: FloatImage) -> Output:
         """Return the picture with its evidence."""
-        curves = {
-            "mean-distance": _curve([_mean(row) for row in self.distances], "Distance of the subbands, mean")
-        }
+        means = [mean(row) for row in self.distances]
+        curves = {"mean-distance": distance_curve(means, "Distance of the subbands, mean")}
         for index, key in enumerate(self.keys):
-            values = [_mean(row[:, index]) for row in self.distances]
-            curves[f"band-{key.label}"] = _curve(values, f"Distance of subband {key.label}")
+            values = [mean(row[:, index]) for row in self.distances]
+            curves[f"band-{key.label}"] = distance_curve(values, f"Distance of subband {key.label}")
         return Output(
             image=image,
             curves=curves,
@@ -316,39 +318,11 @@ class _Run:
             f" result of {columns} x {rows} pixels.",
         )
 
-    def _steps(self, work: Task[ReturnT], stage: str) -> Generator[Step, None, ReturnT]:
-        def make(samples: int) -> Step:
-            self.samples += samples
-            return self._step(stage)
-
-        return self.pace.steps(work, make)
-
-    def _next_stage(self) -> None:
-        self.stage, self.samples = self.stage + 1, 0
-
-    def _step(self, stage: str, metrics: Mapping[str, float] | None = None, frame: str | None = None) -> Step:
-        # The first planes of the noise make no picture yet.
-        whole = len(self.planes) == len(self.model.planes)
-        # Every sample of every band is transformed, matched and transformed back.
-        expected = self.size[0] * self.size[1] * (4 * self.params.orientations + 4)
-        most = 1 if self.stage <= self.rounds else self.stages - self.stage
-        done = round(UNITS * (self.stage + min(self.samples / expected, most)))
-        return Step(done, UNITS * self.stages, stage, metrics or {}, self._preview if whole else None, frame)
-
     def _preview(self) -> FloatImage:
         image = self.image
         if image is None:
             image = finish(self.model.to_image(self.planes, self.size))
         return np.clip(image, 0, 1)
-
-
-def _mean(values: NDArray[np.float64]) -> float:
-    """Return the mean; 0 when there is nothing, as for a constant image."""
-    return float(values.mean()) if values.size else 0.0
-
-
-def _curve(values: Sequence[float], title: str) -> Curve:
-    return Curve.of(values, title, y_label="W1 / standard deviation")
 
 
 register(

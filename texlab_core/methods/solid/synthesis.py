@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.sizes import size_text
-from texlab_core.engine.steps import Curve, Output, Step, middle_slice
+from texlab_core.engine.steps import Output, Step, middle_slice
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.rounds import match
+from texlab_core.methods.heeger_bergen.staged import Staged, distance_curve, mean
 from texlab_core.methods.solid.rounds import CUTS, AxisModel, Plan, match_round, measure, measure_slices
 from texlab_core.methods.solid.slices import SlicePlan
 from texlab_core.methods.solid.told import BANDS, SLICES, VOXELS
 from texlab_core.transforms import gaussian, solid_laplacian
-from texlab_core.work.tasks import Pace, finish, row_blocks
+from texlab_core.work.tasks import finish, row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
+    from collections.abc import Generator
 
     from numpy.typing import NDArray
 
@@ -30,15 +31,13 @@ if TYPE_CHECKING:
     from texlab_core.methods.solid.rounds import SolidModel
     from texlab_core.work.tasks import Crew, Task
 
-ReturnT = TypeVar("ReturnT")
-
 # Samples worked through between two steps: a few milliseconds.
 STRIDE = 2**16
 # Units of progress in each stage.
 UNITS = 1000
 
 
-class Synthesis:
+class Synthesis(Staged):
     """State of one synthesis.
 
     Parameters
@@ -58,28 +57,27 @@ class Synthesis:
         streams: Streams,
         team: Crew,
     ) -> None:
-        self.model, self.inputs, self.params, self.size = model, inputs, params, size
-        self.streams, self.team = streams, team
         slices = model.slices
-        self.plan = Plan(
+        plan = Plan(
             size,
             min(model.solid.levels, max(0, solid_laplacian.max_levels(size) - 1)),
             None
             if slices is None
             else SlicePlan(slices.levels, params.orientations, params.histograms == "pooled"),
         )
+        axes = len(model.solid.planes)
+        # A stage is the start, one round, or all that follows.
+        super().__init__(axes, params.iterations, 1, max(1, plan.work * max(1, axes)), units=UNITS, stride=STRIDE)
+        self.model, self.inputs, self.params, self.size = model, inputs, params, size
+        self.streams, self.team, self.plan = streams, team, plan
         self.models = [
             AxisModel(plane, None if slices is None else slices.planes[axis])
             for axis, plane in enumerate(model.solid.planes)
         ]
-        self.planes: list[NDArray[np.float32]] = []
         self.volume: FloatVolume | None = None
         self.labels = self.plan.labels
         self.distances = np.zeros((params.iterations, len(self.models), len(self.labels)))
         self.measures: dict[str, float] = {}
-        self.pace = Pace(STRIDE)
-        # A stage is the start, one round, or all that follows.
-        self.stage, self.samples, self.stages = 0, 0, params.iterations + 2
 
     def start(self) -> Generator[Step, None, None]:
         """Make noise with the exemplar's values on each colour axis."""
@@ -106,8 +104,8 @@ class Synthesis:
 
         yield from self._steps(self.team.in_order(tasks, accept), stage)
         self._next_stage()
-        mean = {"mean-distance": _mean(self.distances[iteration])}
-        yield self._step(stage, mean, frame=f"iteration {iteration + 1}")
+        metrics = {"mean-distance": mean(self.distances[iteration])}
+        yield self._step(stage, metrics, frame=f"iteration {iteration + 1}")
 
     def _round(
         self, iteration: int, axis: int, plane: NDArray[np.float32]
@@ -135,12 +133,11 @@ class Synthesis:
         pixels = yield from self._measure_pixels(volume)
         self.measures = {
             VOXELS.id: pixels,
-            BANDS.id: _mean(np.array(final)),
+            BANDS.id: mean(np.array(final)),
             **{SLICES[cut].id: float(share) for cut, share in zip(CUTS, shares.mean(axis=0), strict=True)},
         }
-        self.stage = self.stages - 1
-        self._next_stage()
-        yield self._step("done", {"mean-distance": _mean(np.array(final))})
+        self._end_stages()
+        yield self._step("done", {"mean-distance": mean(np.array(final))})
         return self._output(volume, np.array(final))
 
     def _cuts(self) -> list[tuple[int, int]]:
@@ -172,13 +169,13 @@ class Synthesis:
             yield self._step("colours")
 
     def _output(self, volume: FloatVolume, final: NDArray[np.float64]) -> Output:
-        mean = [_mean(each) for each in self.distances]
-        curves = {"mean-distance": _curve(mean, "Distance of the subbands, mean")}
+        means = [mean(each) for each in self.distances]
+        curves = {"mean-distance": distance_curve(means, "Distance of the subbands, mean")}
         for index, label in enumerate(self.labels):
-            values = [_mean(each[:, index]) for each in self.distances]
+            values = [mean(each[:, index]) for each in self.distances]
             if index < len(self.plan.keys):
-                values.append(_mean(final[:, index]) if final.size else 0.0)
-            curves[f"band-{label}"] = _curve(values, f"Distance of subband {label}")
+                values.append(mean(final[:, index]) if final.size else 0.0)
+            curves[f"band-{label}"] = distance_curve(values, f"Distance of subband {label}")
         return Output(volume=volume, curves=curves, measures=self.measures, notes=self._notes())
 
     def _notes(self) -> tuple[str, ...]:
@@ -192,23 +189,6 @@ class Synthesis:
             f" solid of {size_text(self.size)}.",
         )
 
-    def _steps(self, work: Task[ReturnT], stage: str) -> Generator[Step, None, ReturnT]:
-        def make(samples: int) -> Step:
-            self.samples += samples
-            return self._step(stage)
-
-        return self.pace.steps(work, make)
-
-    def _next_stage(self) -> None:
-        self.stage, self.samples = self.stage + 1, 0
-
-    def _step(self, stage: str, metrics: Mapping[str, float] | None = None, frame: str | None = None) -> Step:
-        # The first planes of the noise make no picture yet.
-        whole = len(self.planes) == len(self.models)
-        expected = max(1, self.plan.work * max(1, len(self.models)))
-        done = round(UNITS * (self.stage + min(self.samples / expected, 1 if self.stage < self.stages else 0)))
-        return Step(done, UNITS * self.stages, stage, metrics or {}, self._preview if whole else None, frame)
-
     def _preview(self) -> FloatImage:
         middle = self.size[0] // 2
         if self.volume is not None:
@@ -217,12 +197,3 @@ class Synthesis:
         image = finish(self.model.solid.to_image(planes, (self.size[1], self.size[2])))
         clipped: FloatImage = np.clip(image, 0, 1)
         return clipped
-
-
-def _mean(values: NDArray[np.float64]) -> float:
-    """Return the mean; 0 when there is nothing, as for a constant exemplar."""
-    return float(values.mean()) if values.size else 0.0
-
-
-def _curve(values: list[float], title: str) -> Curve:
-    return Curve.of(values, title, y_label="W1 / standard deviation")
