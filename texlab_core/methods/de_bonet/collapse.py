@@ -10,7 +10,7 @@ from texlab_core.methods.de_bonet.analysis import PIXELS_AT_ONCE
 from texlab_core.work.tasks import row_bounds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
 
     from numpy.typing import NDArray
 
@@ -27,8 +27,8 @@ def coarsest(analysis: Analysis, grid: Grid, source: NDArray[np.int32]) -> Float
 
 def collapse_steps(
     analysis: Analysis, grid: Grid, level: int, coarser: FloatImage, source: NDArray[np.int32], periodic: bool
-) -> Iterator[FloatImage]:
-    """Grow the output by one level; yields after each block of rows, complete at the last yield.
+) -> Generator[None, None, FloatImage]:
+    """Grow the output by one level, (h, w, C) float32; yields after each block of rows.
 
     Parameters
     ----------
@@ -56,7 +56,8 @@ def collapse_steps(
         collapse_rows(
             coarser, periodic, analysis.levels[level].band, source, row_part, column_part, framed, out, first, last
         )
-        yield out
+        yield
+    return out
 
 
 def enlarge(image: FloatImage, times: int, periodic: bool) -> FloatImage:

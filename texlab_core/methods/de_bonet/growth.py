@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from texlab_core.methods.de_bonet.quadtree import Grid
 from texlab_core.work.tasks import relay, row_bounds, through
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Sequence
+    from collections.abc import Callable, Generator, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -67,6 +67,43 @@ def total_work(grid: Grid, after: int = 0) -> int:
     return 2 * sum(grid.count(level) for level in range(grid.depth)) + grid.count(grid.depth) + after
 
 
+def grow_levels(
+    grid: Grid,
+    progress: Iterable[Progress],
+    make: Callable[[int], Generator[Any, None, None]],
+    *,
+    preview: Callable[[], FloatImage],
+    after: int,
+) -> Generator[Step, None, None]:
+    """Make each level as soon as its sources are complete; every level that is finished becomes a frame.
+
+    Parameters
+    ----------
+    progress
+        Yields (level, count) when ``count`` more locations of a level have their source, coarse levels first.
+    make
+        Makes a level below the coarsest, which is there already; called for one after the other.
+    preview
+        Makes a picture of the levels that are there.
+    after
+        Work that follows, in locations.
+    """
+    level = grid.depth
+    missing = [grid.count(each) for each in range(level)]
+    total, done = total_work(grid, after), grid.count(level)
+    yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
+    for made_level, made in progress:
+        if made:
+            missing[made_level] -= made
+            done += made
+        yield Step(done, total, f"level {made_level}", preview=preview)
+        while level > 0 and missing[level - 1] == 0:
+            level -= 1
+            yield from through(make(level), Step(done, total, f"level {level}", preview=preview))
+            done += grid.count(level)
+            yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
+
+
 def grow(
     analysis: Analysis,
     grid: Grid,
@@ -77,46 +114,35 @@ def grow(
     periodic: bool,
     after: int = 0,
 ) -> Generator[Step, None, FloatImage]:
-    """Collapse each level as soon as its sources are complete; every level that is finished becomes a frame.
+    """Collapse each level as soon as its sources are complete.
 
     Parameters
     ----------
     sources
         Per level, in quadtree order; the coarsest is complete, the others are being filled by ``progress``.
-    progress
-        Yields (level, count) when ``count`` more locations of a level have their source, coarse levels first.
+    progress, after
+        As for :func:`grow_levels`.
     size
         Height and width of the pictures.
     periodic
         Border rule of the output.
-    after
-        Work that follows, in locations.
 
     Returns
     -------
     ndarray
         The finest level, cropped and clipped, (H, W, C) float32.
     """
-    level = grid.depth
-    missing = [grid.count(each) for each in range(level)]
-    total, done = total_work(grid, after), grid.count(level)
-    image = coarsest(analysis, grid, sources[level])
+    there = grid.depth
+    image = coarsest(analysis, grid, sources[there])
 
     def preview() -> FloatImage:
-        return visible(enlarge(image, level, periodic), size)
+        return visible(enlarge(image, there, periodic), size)
 
-    yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    for made_level, made in progress:
-        if made:
-            missing[made_level] -= made
-            done += made
-        yield Step(done, total, f"level {made_level}", preview=preview)
-        while level > 0 and missing[level - 1] == 0:
-            grown = image
-            for grown in collapse_steps(analysis, grid, level - 1, image, sources[level - 1], periodic):  # noqa: B007
-                yield Step(done, total, f"level {level - 1}", preview=preview)
-            level, image = level - 1, grown
-            done += grid.count(level)
-            yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    step = Step(done, total, "level 0", preview=preview)
+    def make(level: int) -> Generator[None, None, None]:
+        nonlocal there, image
+        image = yield from collapse_steps(analysis, grid, level, image, sources[level], periodic)
+        there = level
+
+    yield from grow_levels(grid, progress, make, preview=preview, after=after)
+    step = Step(total_work(grid), total_work(grid, after), "level 0", preview=preview)
     return (yield from through(visible_steps(image, size), step))

@@ -24,7 +24,7 @@ from texlab_core.methods.de_bonet.analysis import Analysis, finish_level
 from texlab_core.methods.de_bonet.channels import planes_of
 from texlab_core.methods.de_bonet.features import Feature
 from texlab_core.methods.de_bonet.fitting import fit
-from texlab_core.methods.de_bonet.growth import total_work, visible, visible_steps
+from texlab_core.methods.de_bonet.growth import grow_levels, total_work, visible, visible_steps
 from texlab_core.methods.de_bonet.seams import Seams
 from texlab_core.transforms import steerable
 from texlab_core.transforms.steerable import BandKey, Transform
@@ -193,33 +193,23 @@ def grow_steerable(
     ndarray
         (H, W, C) float32, cropped and clipped.
     """
-    level, channels = grid.depth, analysis.channels
-    missing = [grid.count(each) for each in range(level)]
-    total, done = total_work(grid, after), grid.count(level)
+    depth, channels, total = grid.depth, analysis.channels, total_work(grid, after)
     blank = np.empty(grid.shape(0), np.float32)
-    transform = Transform.of(blank, min(level, steerable.max_levels(grid.shape(0))), analysis.orientations)
+    transform = Transform.of(blank, min(depth, steerable.max_levels(grid.shape(0))), analysis.orientations)
     sums = [transform.empty_sum() for _ in range(channels)]
 
     def preview() -> FloatImage:
         planes = [transform.inverse(each.copy()) for each in sums]
         return visible(np.stack(planes, axis=-1), size)
 
-    yield from through(_add(analysis, grid, level, sources[level], transform, sums), Step(done, total, "residual"))
-    yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
-    for made_level, made in progress:
-        if made:
-            missing[made_level] -= made
-            done += made
-        yield Step(done, total, f"level {made_level}", preview=preview)
-        while level > 0 and missing[level - 1] == 0:
-            level -= 1
-            step = Step(done, total, f"level {level}", preview=preview)
-            yield from through(_add(analysis, grid, level, sources[level], transform, sums), step)
-            done += grid.count(level)
-            yield Step(done, total, f"level {level}", preview=preview, frame=f"level {level}")
+    def make(level: int) -> Generator[int, None, None]:
+        return _add(analysis, grid, level, sources[level], transform, sums)
+
+    yield from through(make(depth), Step(grid.count(depth), total, "residual"))
+    yield from grow_levels(grid, progress, make, preview=preview, after=after)
     # The sums are not needed any more: they become the planes.
     image = np.empty((*grid.shape(0), channels), np.float32)
-    step = Step(done, total, "level 0")
+    step = Step(total_work(grid), total, "level 0")
     for channel, each in enumerate(sums):
         image[..., channel] = yield from through(_inverse(each, transform), step)
         yield step
