@@ -269,6 +269,17 @@ def test_every_tab_and_setting_of_the_bundled_lessons_is_one_of_the_window(qtbot
                     assert docks[step.tab.name].settings()[key] == value
 
 
+def test_without_a_lesson_the_dock_says_what_to_do_and_offers_nothing_of_a_step(qtbot: Any) -> None:
+    dock = LessonsDock()
+    qtbot.addWidget(dock)
+    dock.show()
+    feed(dock, scene_of())
+    assert dock.note.isVisible()
+    assert dock.note.text() == "Click a lesson to give it."
+    for each in (dock.slider, dock.reveal, dock.pane, dock.question_label, dock.answer_label, dock.try_label):
+        assert not each.isVisible()
+
+
 def test_the_dock_says_what_belongs_to_a_step_and_hides_the_answer(qtbot: Any, small: str) -> None:
     dock = LessonsDock()
     qtbot.addWidget(dock)

@@ -86,6 +86,8 @@ class LessonsDock(FramedDock):
         layout = QVBoxLayout(self.body)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(splitter)
+        self._show_words(None)
+        self._drawing.setVisible(False)
 
     def _make_words(self) -> QWidget:
         self.pane = PicturePane("lessons-drawing", "Drawing of the step")

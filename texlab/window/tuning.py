@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QSignalBlocker
-from PySide6.QtWidgets import QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from texlab.columns.comparison import GAINS, Comparison, Mode, other_of
 from texlab.columns.magnifier import Magnifier
@@ -35,6 +35,8 @@ class CompareBar(QWidget):
         self.gain.setObjectName("compare-gain")
         self.gain.setAccessibleName("Gain of the difference")
         self.gain.setFixedWidth(70)
+        # A layout gives no room of their own to boxes that may shrink to nothing.
+        self.gain.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         set_tip(self.gain, "The difference is multiplied by this before it is shown")
         for gain in GAINS:
             self.gain.addItem(f"× {gain}", gain)
