@@ -11,10 +11,15 @@ from typing import TYPE_CHECKING, TypeVar
 from texlab_core.errors import InputError, ParamError
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Sequence
 
+    from texlab.cli.parser import Parser
     from texlab_core.documents.preset_store import PresetStore
+    from texlab_core.documents.presets import Preset
     from texlab_core.engine.inputs import Crop
+    from texlab_core.engine.params import Params
+    from texlab_core.engine.registry import Method
 
 NumberT = TypeVar("NumberT", int, float)
 
@@ -116,6 +121,33 @@ def _check_writable(folder: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be written to ({error.strerror}).") from error
+
+
+def add_json_option(parser: Parser) -> None:
+    """Add ``--json``."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def add_parameter_options(parser: Parser, words: str = "start from these parameters") -> None:
+    """Add ``--preset``, with its help in ``words``, and ``--set``; :func:`parse_parameters` reads both."""
+    parser.add_argument("--preset", metavar="NAME|FILE", help=words)
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+
+
+def parse_parameters(args: argparse.Namespace, method: Method) -> Params:
+    """Return the parameters of a method: its defaults, over them the preset's, over them what is set."""
+    settings = parse_settings(args.set)
+    preset = named_preset(args, method.id)
+    return method.params.parse(settings, None if preset is None else preset.params())
+
+
+def named_preset(args: argparse.Namespace, method: str | None) -> Preset | None:
+    """Return the preset that ``--preset`` names (of one method), if any; raises ``InputError``."""
+    if args.preset is None:
+        return None
+    from texlab_core.documents.preset_store import find_preset
+
+    return find_preset(args.preset, own_presets(), method)
 
 
 def own_presets() -> PresetStore:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_file, output_folder
+from texlab.cli.commands._options import add_json_option, output_file, output_folder
 from texlab.cli.commands._progress import progress
 from texlab.cli.terminal import interrupted
 
@@ -30,7 +30,7 @@ def add_output_options(parser: Parser) -> None:
         "--bits", choices=BITS, help="for each sample: 8, 16, or float in a TIFF (default: as the exemplar has)"
     )
     parser.add_argument("--maps", metavar="DIR", help="also save the maps and curves in this folder")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_folder, parse_number
+from texlab.cli.commands._options import add_json_option, output_folder, parse_number
 from texlab.cli.commands._progress import batch_bar, spoken
 from texlab.cli.terminal import complain, interrupted, logged_quietly
 
@@ -41,7 +41,7 @@ def configure(parser: Parser) -> None:
     place.add_argument("--processes", metavar="N", help="on this machine (default: one for each core)")
     place.add_argument("--cluster", metavar="ADDRESS", help="Dask: tcp://HOST:PORT, or local:N to start one here")
     parser.add_argument("--sample", metavar="N", help="run only N jobs, spread evenly over the plan")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

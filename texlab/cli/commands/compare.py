@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
 from texlab.cli.commands._options import (
+    add_json_option,
     output_file,
     parse_number,
     parse_settings,
@@ -54,7 +55,7 @@ def configure(parser: Parser) -> None:
     )
     add_scale_options(parser)
     add_figure_options(parser)
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import json
 import textwrap
 from typing import TYPE_CHECKING
 
+from texlab.cli.commands._options import add_json_option
 from texlab.cli.terminal import interrupted
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def configure(parser: Parser) -> None:
         metavar="RESULT",
         help="any picture; with a recipe inside, method and parameters are known",
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from texlab.cli.commands._options import output_file, refuse_overwriting
+from texlab.cli.commands._options import add_json_option, output_file, refuse_overwriting
 from texlab.cli.commands._sources import CODE_SUFFIX, add_scale_options, is_code, parse_reading
 from texlab_core.errors import ParamError
 
@@ -37,7 +37,7 @@ def configure(parser: Parser) -> None:
         help="along which axes: of the frequency plane (default uv), or along and across the waves",
     )
     add_scale_options(parser)
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

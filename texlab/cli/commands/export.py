@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._figures import add_figure_options, parse_figure, refuse_figure_options
 from texlab.cli.commands._options import (
+    add_json_option,
+    add_parameter_options,
+    named_preset,
     output_file,
     output_folder,
     parse_number,
@@ -70,8 +73,7 @@ def configure(parser: Parser) -> None:
         help="where they go (default inside)",
     )
     parser.add_argument("--method", metavar="ID", help="make results of an image by this method")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    add_parameter_options(parser)
     add_scale_options(parser)
     add_input_options(parser)
     parser.add_argument("--animate", metavar="WHAT", help="growth, iterations, or a knob as in alpha=0.05:0.3:24")
@@ -81,7 +83,7 @@ def configure(parser: Parser) -> None:
     add_figure_options(parser)
     parser.add_argument("--columns", metavar="N", help="of a figure: pictures in a row")
     parser.add_argument("--preview", action="store_true", help="say what would be written, and write nothing")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -153,12 +155,10 @@ def _columns(source: str) -> list[Item]:
 
 
 def _job(args: argparse.Namespace) -> Job:
-    from texlab.cli.commands._options import own_presets
-    from texlab_core.documents.preset_store import find_preset
     from texlab_core.engine.job import Job
     from texlab_core.engine.registry import find_method
 
-    preset = None if args.preset is None else find_preset(args.preset, own_presets(), args.method)
+    preset = named_preset(args, args.method)
     method = find_method(args.method or (preset.method if preset is not None else ""))
     params = method.params.parse(parse_settings(args.set), None if preset is None else preset.params())
     inputs = load_inputs(args.sources[0], method, parse_reading(args), parse_inputs(args))

@@ -6,7 +6,13 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from texlab.cli.commands._options import parse_number, parse_settings, parse_size, refuse_overwriting
+from texlab.cli.commands._options import (
+    add_parameter_options,
+    parse_number,
+    parse_parameters,
+    parse_size,
+    refuse_overwriting,
+)
 from texlab.cli.commands._outputs import (
     add_output_options,
     check_outputs,
@@ -50,8 +56,7 @@ def configure(parser: Parser) -> None:
     add_alpha_options(parser, keeps=True)
     add_output_options(parser)
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    add_parameter_options(parser)
     parser.more_help = _knobs
 
 
@@ -63,13 +68,7 @@ def execute(args: argparse.Namespace) -> int:
         raise InputError("Give either --mask or --transparent.")
     if args.mask is None and not args.transparent and args.size is None:
         raise InputError("There is nothing to fill: give --mask, --transparent or a larger --size.")
-    base = None
-    if args.preset is not None:
-        from texlab.cli.commands._options import own_presets
-        from texlab_core.documents.preset_store import find_preset
-
-        base = find_preset(args.preset, own_presets(), METHOD).params()
-    params = find_method(METHOD).params.parse(parse_settings(args.set), base)
+    params = parse_parameters(args, find_method(METHOD))
     size = None if args.size is None else parse_size(args.size)
     seed = parse_number("seed", args.seed, int)
     reading = parse_reading(args)

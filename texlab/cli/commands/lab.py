@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands import _lab_filters, _lab_shape
+from texlab.cli.commands._options import add_json_option
 
 if TYPE_CHECKING:
     import argparse
@@ -27,7 +28,7 @@ def configure(parser: Parser) -> None:
         )
         each.set_defaults(experiment=experiment)
         experiment.configure(each)
-        each.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+        add_json_option(each)
         each.add_argument("--quiet", action="store_true", help="no output but errors and --json")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._options import output_folder
+from texlab.cli.commands._options import add_json_option, output_folder
 from texlab.cli.terminal import interrupted
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--check", action="store_true", help="run every step")
     parser.add_argument("--export", metavar="DIR", help="write index.html and its pictures into a folder")
     parser.add_argument("--reduced", action="store_true", help="with at most 64 pixels a side, for a quick check")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

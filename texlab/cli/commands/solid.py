@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from texlab.cli.commands._options import output_file, parse_number, refuse_overwriting
+from texlab.cli.commands._options import add_json_option, output_file, parse_number, refuse_overwriting
 from texlab.cli.terminal import interrupted
 from texlab_core.errors import Cancelled, ParamError
 
@@ -55,7 +55,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument(
         "--side", default="400", metavar="N", help="of the object's picture, in pixels (default 400)"
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:

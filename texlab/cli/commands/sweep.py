@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
 from texlab.cli.commands._options import (
+    add_json_option,
+    named_preset,
     output_file,
     parse_number,
     parse_result_size,
@@ -65,7 +67,7 @@ def configure(parser: Parser) -> None:
     add_figure_options(parser)
     parser.add_argument("--columns", metavar="N", help="pictures in a row of a series")
     parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+    add_json_option(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -105,15 +107,13 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     """Return what is to be done and with which exemplar; what is named on the command line comes first."""
     import dataclasses
 
-    from texlab.cli.commands._options import own_presets
-    from texlab_core.documents.preset_store import find_preset
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import InputError
     from texlab_core.sheets.sweep import Vary
     from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
 
     recipe = None if args.recipe is None else find_sweep(args.recipe)
-    preset = None if args.preset is None else find_preset(args.preset, own_presets(), args.method)
+    preset = named_preset(args, args.method)
     chosen = args.method or (preset and preset.method) or (recipe and recipe.method)
     if not chosen:
         raise InputError("A sweep needs a method: say --method ID, --preset NAME or --recipe NAME.")

@@ -7,9 +7,10 @@ import json
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import (
+    add_parameter_options,
     parse_number,
+    parse_parameters,
     parse_result_size,
-    parse_settings,
     refuse_overwriting,
 )
 from texlab.cli.commands._outputs import (
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from texlab.cli.parser import Parser
-    from texlab_core.engine.params import Params
 
 HELP = "Make more of a texture and save it with its recipe."
 ORDER = 10
@@ -49,8 +49,7 @@ def configure(parser: Parser) -> None:
     add_output_options(parser)
     parser.add_argument("--size", metavar="WxH|WxHxD", help="of the result (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="start from these parameters")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    add_parameter_options(parser)
     add_scale_options(parser, keeps=True)
     add_input_options(parser)
     parser.more_help = _knobs_of_the_method
@@ -61,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.engine.registry import find_method
 
     method = find_method(args.method)
-    params = method.params.parse(parse_settings(args.set), _base(args))
+    params = parse_parameters(args, method)
     size = None if args.size is None else parse_result_size(args.size, method.dimensions)
     seed = parse_number("seed", args.seed, int)
     reading = parse_reading(args)
@@ -83,16 +82,6 @@ def execute(args: argparse.Namespace) -> int:
     result = make(job, outputs, keep=sources)
     print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
     return 0
-
-
-def _base(args: argparse.Namespace) -> Params | None:
-    """Return the parameters of the preset, if one was named."""
-    if args.preset is None:
-        return None
-    from texlab.cli.commands._options import own_presets
-    from texlab_core.documents.preset_store import find_preset
-
-    return find_preset(args.preset, own_presets(), args.method).params()
 
 
 def _knobs_of_the_method(given: Sequence[str]) -> str:

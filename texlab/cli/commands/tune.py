@@ -6,10 +6,11 @@ import json
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import (
+    add_parameter_options,
     output_file,
     parse_number,
+    parse_parameters,
     parse_result_size,
-    parse_settings,
     refuse_overwriting,
 )
 from texlab.cli.commands._progress import share_bar
@@ -63,8 +64,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument("--budget", default="480", metavar="N", help="most runs, 24 to 5000 (default 480)")
     parser.add_argument("--size", metavar="WxH|WxHxD", help="of the results (default: the exemplar's)")
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same preset (default 0)")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="begin with these parameters")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
+    add_parameter_options(parser, "begin with these parameters")
     add_scale_options(parser)
     add_input_options(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object: all that was tried")
@@ -72,8 +72,6 @@ def configure(parser: Parser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Check everything, search, write the preset, report."""
-    from texlab.cli.commands._options import own_presets
-    from texlab_core.documents.preset_store import find_preset
     from texlab_core.documents.presets import check_name, write_preset
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.job import Job
@@ -83,8 +81,7 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.sheets.tuning import DEFAULT_LIMIT, KEPT, tune
 
     method = find_method(args.method)
-    base = None if args.preset is None else find_preset(args.preset, own_presets(), method.id).params()
-    params = method.params.parse(parse_settings(args.set), base)
+    params = parse_parameters(args, method)
     knobs = [] if args.knobs is None else [each.strip().replace("-", "_") for each in args.knobs.split(",")]
     limit: Limit = "start" if args.limit == "start" else DEFAULT_LIMIT
     if args.limit not in ("start", "own"):
