@@ -65,6 +65,13 @@ def whole(args: argparse.Namespace, name: str) -> int:
     return parse_number(name, getattr(args, name), int)
 
 
+def checked_seed(args: argparse.Namespace) -> int:
+    """Return the seed."""
+    from texlab_core.engine.job import check_seed
+
+    return check_seed(whole(args, "seed"))
+
+
 def numbers(name: str, text: str) -> list[float]:
     """Return numbers that are separated by commas."""
     return [parse_number(name, part, float) for part in text.split(",")]

@@ -8,6 +8,7 @@ from texlab.cli.commands._lab import (
     Experiment,
     add_image,
     add_out,
+    checked_seed,
     load,
     load_plane,
     number,
@@ -69,7 +70,7 @@ def _representation_options(parser: Parser) -> None:
 
 def _representation(args: argparse.Namespace) -> int:
     smoothing, threshold, classes = number(args, "smoothing"), number(args, "threshold"), whole(args, "classes")
-    seed = _seed(args)
+    seed = checked_seed(args)
     out = out_file(args, args.image)
     plane = load_plane(args, args.image)
 
@@ -144,7 +145,7 @@ def _equalize_options(parser: Parser) -> None:
 
 def _equalize(args: argparse.Namespace) -> int:
     value = None if args.value is None else number(args, "value")
-    seed = _seed(args)
+    seed = checked_seed(args)
     out = out_file(args, args.two, args.one)
 
     import numpy as np
@@ -252,7 +253,7 @@ def _search_options(parser: Parser) -> None:
 
 def _search(args: argparse.Namespace) -> int:
     values: dict[str, Any] = {"alpha": number(args, "threshold"), "beta": number(args, "stricter")}
-    level, components, seed = whole(args, "level"), whole(args, "components"), _seed(args)
+    level, components, seed = whole(args, "level"), whole(args, "components"), checked_seed(args)
     place = None
     if args.pixel is not None:
         parts = args.pixel.split(",")
@@ -288,14 +289,6 @@ def _search(args: argparse.Namespace) -> int:
 
 def _tally(way: Tally, locations: int) -> dict[str, float]:
     return {name: getattr(way, name) / locations for name in ("keys", "verified", "found")}
-
-
-def _seed(args: argparse.Namespace) -> int:
-    from texlab_core.engine.job import check_seed
-
-    seed = whole(args, "seed")
-    check_seed(seed)
-    return seed
 
 
 EXPERIMENTS = {

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from texlab.cli.commands._lab import Experiment, add_image, add_out, load_plane, number, out_file, report, whole
+from texlab.cli.commands._lab import (
+    Experiment,
+    add_image,
+    add_out,
+    checked_seed,
+    load_plane,
+    number,
+    out_file,
+    report,
+    whole,
+)
 from texlab.cli.commands._options import parse_size
 from texlab_core.errors import ParamError
 
@@ -156,9 +166,7 @@ def _sphere(args: argparse.Namespace) -> int:
 def _rng(args: argparse.Namespace) -> np.random.Generator:
     import numpy as np
 
-    from texlab_core.engine.job import check_seed
-
-    return np.random.default_rng(check_seed(whole(args, "seed")))
+    return np.random.default_rng(checked_seed(args))
 
 
 EXPERIMENTS = {

@@ -121,9 +121,9 @@ def add_input_options(parser: Parser) -> None:
 
 def parse_inputs(args: argparse.Namespace) -> dict[str, Source]:
     """Return the further inputs that were named; raises ``InputError``."""
-    places = _by_name(args.input, "input", "a name and a source as in second=wall.jpg")
-    scales = _by_name(args.input_scale, "input-scale", "a name and a factor as in second=0.5")
-    crops = _by_name(args.input_crop, "input-crop", "a name and a part as in second=256x192+10+20")
+    places = by_name(args.input, "input", "a name and a source as in second=wall.jpg")
+    scales = by_name(args.input_scale, "input-scale", "a name and a factor as in second=0.5")
+    crops = by_name(args.input_crop, "input-crop", "a name and a part as in second=256x192+10+20")
     for option, given in (("input-scale", scales), ("input-crop", crops)):
         for name in given:
             if name not in places:
@@ -140,8 +140,17 @@ def parse_inputs(args: argparse.Namespace) -> dict[str, Source]:
     }
 
 
-def _by_name(texts: Sequence[str], option: str, allowed: str) -> dict[str, str]:
-    found: dict[str, str] = {}
+def by_name(
+    texts: Sequence[str], option: str, allowed: str, given: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Return the values of ``NAME=VALUE`` by name, after those that are given already.
+
+    Raises
+    ------
+    InputError
+        When one has another form (``allowed`` says which), or a name comes twice.
+    """
+    found = dict(given or {})
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name or not value:

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._options import add_json_option, output_folder
-from texlab.cli.terminal import interrupted
+from texlab.cli.terminal import interrupted, shows_progress
 
 if TYPE_CHECKING:
     import argparse
@@ -77,7 +77,7 @@ def _listing(lesson: Lesson) -> list[str]:
 
 
 def _tell(number: int, count: int) -> None:
-    import sys
+    if shows_progress():
+        import sys
 
-    if sys.stderr.isatty():
         print(f"step {number} of {count}", end="\r", file=sys.stderr, flush=True)

@@ -7,9 +7,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from texlab.cli.commands._options import refuse_overwriting
-from texlab.cli.commands._outputs import Outputs, add_output_options, check_outputs, described, make, summary_of
+from texlab.cli.commands._outputs import (
+    Outputs,
+    add_output_options,
+    check_outputs,
+    chosen_bits,
+    described,
+    make,
+    summary_of,
+)
+from texlab.cli.commands._sources import by_name
 from texlab.cli.terminal import complain, interrupted
-from texlab_core.errors import InputError, ParamError, RecipeError
+from texlab_core.errors import RecipeError
 
 if TYPE_CHECKING:
     import argparse
@@ -68,14 +77,7 @@ def execute(args: argparse.Namespace) -> int:
 def _given(args: argparse.Namespace) -> dict[str, str]:
     """Return the images that were named, by the role they have in the recipe."""
     given = {} if args.exemplar is None else {"exemplar": args.exemplar}
-    for text in args.input:
-        role, equals, image = text.partition("=")
-        if not equals or not role or not image:
-            raise ParamError("input", "a name and an image as in start=wall.jpg", text)
-        if role in given:
-            raise InputError(f"The input {role} is given twice.")
-        given[role] = image
-    return given
+    return by_name(args.input, "input", "a name and an image as in start=wall.jpg", given)
 
 
 def _check_missing(name: str, recipe: Recipe, given: Mapping[str, str]) -> None:
@@ -106,11 +108,8 @@ def _bits(args: argparse.Namespace, before: Decoded | None, dimensions: int) -> 
     """Return the depth that was asked for, else that of the result when the new file can hold it."""
     from texlab_core.documents.record import check_result_format
 
-    bits: dict[str, Bits] = {"8": 8, "16": 16, "float": "float"}
-    if args.bits is not None:
-        return bits[args.bits]
-    if before is None:
-        return None
+    if args.bits is not None or before is None:
+        return chosen_bits(args)
     depth: Bits = {255: 8, 65535: 16}.get(before.peak, "float")  # type: ignore[assignment, arg-type]
     try:
         check_result_format(args.out, depth, dimensions)
