@@ -15,7 +15,7 @@ import pytest
 from tests.core.batch_tools import files_of, shape_of, small_plan
 from texlab_core.api import synthesize
 from texlab_core.batch.folder import BatchFolder, file_stem
-from texlab_core.batch.orders import job_hash, make_order
+from texlab_core.batch.orders import make_order
 from texlab_core.batch.parcels import Packer
 from texlab_core.batch.pictures import thumbnail
 from texlab_core.batch.places import InProcess
@@ -297,9 +297,8 @@ def test_a_hash_depends_on_everything_that_the_result_does(monkeypatch: pytest.M
 
         kind = find_method(method).params
         exemplar = as_exemplar(image) if isinstance(image, np.ndarray) else image
-        return job_hash(
-            Job(method=method, inputs={"exemplar": exemplar}, params=kind(**params), size=size, seed=seed), bits=8
-        )
+        job = Job(method=method, inputs={"exemplar": exemplar}, params=kind(**params), size=size, seed=seed)
+        return make_order(job, shape_of, bits=8)[0].key
 
     whole = as_exemplar(pixels)
     different = [

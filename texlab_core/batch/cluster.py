@@ -16,6 +16,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.orders import Order, Outcome, Workbench
+from texlab_core.batch.parcels import Deposit
 from texlab_core.batch.places import POLL_S
 from texlab_core.errors import Cancelled, InputError, ParamError
 
@@ -117,9 +118,7 @@ class _Shipping:
         self._count_workers = count_workers
         self._arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._waiting: dict[str, tuple[Any, Order]] = {}
-        self._parcels: dict[str, Any] = {}
-        self._needed: dict[str, int] = {}
-        self._newest: frozenset[str] = frozenset()
+        self._parcels = _Sent(client)
 
     def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
         more, room, counted = True, 0, 0.0
@@ -144,13 +143,8 @@ class _Shipping:
                 self._client.cancel([future for future, _ in self._waiting.values()])
 
     def _send(self, order: Order, parcels: Mapping[str, Parcel]) -> None:
-        before, self._newest = self._newest, frozenset(parcels)
-        for name, parcel in parcels.items():
-            if name not in self._parcels:
-                self._parcels[name] = self._client.submit(_keep, dict(parcel), key=f"texlab-parcel-{name}")
-            self._needed[name] = self._needed.get(name, 0) + 1
-        self._tidy(before)
-        held = {name: self._parcels[name] for name in order.parcels}
+        self._parcels.bring(parcels)
+        held = {name: self._parcels.futures[name] for name in order.parcels}
         # Another program may ask the same cluster for the same job, and for something else of its result.
         key = f"texlab-job-{order.key}-{self._client.id}"
         future = self._client.submit(_carry_out, order, list(held), *held.values(), key=key)
@@ -159,9 +153,7 @@ class _Shipping:
 
     def _receive(self, future: Any) -> Outcome:
         _, order = self._waiting.pop(future.key)
-        for name in order.parcels:
-            self._needed[name] -= 1
-        self._tidy(order.parcels)
+        self._parcels.leave(order.parcels)
         if future.status == "finished":
             outcome: Outcome = future.result()
             return outcome
@@ -173,10 +165,20 @@ class _Shipping:
         why = f"{type(error).__name__}: {' '.join(str(error).split())}"
         return Outcome(order.key, error=f"The cluster could not run it ({why}).")
 
-    def _tidy(self, names: Iterable[str]) -> None:
-        for name in names:
-            if name in self._parcels and not self._needed[name] and name not in self._newest:
-                del self._parcels[name], self._needed[name]
+
+class _Sent(Deposit):
+    """The parcels at the cluster: each is the result of a task, and there as long as its future is held."""
+
+    def __init__(self, client: Any) -> None:
+        super().__init__()
+        self._client = client
+        self.futures: dict[str, Any] = {}
+
+    def put(self, name: str, parcel: Parcel) -> None:
+        self.futures[name] = self._client.submit(_keep, dict(parcel), key=f"texlab-parcel-{name}")
+
+    def remove(self, name: str) -> None:
+        del self.futures[name]
 
 
 def _keep(parcel: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -36,7 +36,8 @@ class Order:
     Parameters
     ----------
     key
-        Tells it from every other one; see :func:`job_hash`.
+        Tells it from every other one: the SHA-256 of everything that its result depends on, versions of the
+        libraries included, and of what else :func:`make_order` was given.
     method, params, size, seed
         Of the job; the parameters as JSON data.
     slips
@@ -84,20 +85,6 @@ class Outcome:
     elapsed_s: float = 0.0
 
 
-def job_hash(job: Job, **more: object) -> str:
-    """Return the SHA-256 of everything that a job's result depends on, versions of the libraries included.
-
-    Parameters
-    ----------
-    job
-        The job.
-    **more
-        What else the hash shall depend on, as JSON data: how many bits are saved, say.
-    """
-    slips, _ = Packer().pack(job.inputs)
-    return _hash(job, slips, more)
-
-
 def _hash(job: Job, slips: Mapping[str, Slip], more: Mapping[str, object]) -> str:
     inputs = {}
     for role, slip in slips.items():
@@ -130,7 +117,7 @@ def make_order(
     packer
         Shared by jobs whose inputs share a source.
     **more
-        See :func:`job_hash`.
+        What else its key shall depend on, as JSON data: how many bits are saved, say.
     """
     slips, parcels = (Packer() if packer is None else packer).pack(job.inputs)
     order = Order(

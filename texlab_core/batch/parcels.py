@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from texlab_core.errors import InputError
 from texlab_core.images.exemplar import take
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
 Parcel = Mapping[str, "NDArray[Any]"]
@@ -117,3 +120,44 @@ class Unpacked:
             while len(self._inputs) > self._capacity:
                 self._inputs.popitem(last=False)
         return found
+
+
+class Deposit(ABC):
+    """Parcels at one place, each as long as orders that need it are on their way, and those that came last."""
+
+    def __init__(self) -> None:
+        self._needed: dict[str, int] = {}
+        self._newest: frozenset[str] = frozenset()
+
+    def __len__(self) -> int:
+        """Return how many parcels are there."""
+        return len(self._needed)
+
+    @abstractmethod
+    def put(self, name: str, parcel: Parcel) -> None:
+        """Take a parcel in, by its hash."""
+
+    @abstractmethod
+    def remove(self, name: str) -> None:
+        """Take it away again."""
+
+    def bring(self, parcels: Mapping[str, Parcel]) -> None:
+        """Count what an order needs, and put what is not there yet."""
+        before, self._newest = self._newest, frozenset(parcels)
+        for name, parcel in parcels.items():
+            if name not in self._needed:
+                self.put(name, parcel)
+            self._needed[name] = self._needed.get(name, 0) + 1
+        self._tidy(before)
+
+    def leave(self, names: Collection[str]) -> None:
+        """Count an order that needed these as done; what nobody needs goes, except for what came last."""
+        for name in names:
+            self._needed[name] -= 1
+        self._tidy(names)
+
+    def _tidy(self, names: Collection[str]) -> None:
+        for name in names:
+            if name in self._needed and not self._needed[name] and name not in self._newest:
+                del self._needed[name]
+                self.remove(name)

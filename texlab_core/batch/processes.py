@@ -24,11 +24,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.batch.orders import Order, Outcome, Workbench
+from texlab_core.batch.parcels import Deposit
 from texlab_core.batch.places import POLL_S
 from texlab_core.errors import Cancelled, InputError, ParamError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
     from multiprocessing.synchronize import Event
 
     from texlab_core.batch.parcels import Parcel
@@ -97,7 +98,7 @@ class _Crew:
                 self._renew()
                 for order in lost:
                     yield self._alone(order, should_stop)
-                    self._drop.leave(order)
+                    self._drop.leave(order.parcels)
                 lost = []
             while more and not lost and len(waiting) < 2 * self._width:
                 loaded = next(orders, None)
@@ -105,7 +106,7 @@ class _Crew:
                     more = False
                     break
                 order = loaded[0]
-                self._drop.bring(order, loaded[1])
+                self._drop.bring(loaded[1])
                 try:
                     waiting[self._submit(order)] = order
                 except BrokenProcessPool:
@@ -118,7 +119,7 @@ class _Crew:
                     lost.append(order)
                     continue
                 yield outcome
-                self._drop.leave(order)
+                self._drop.leave(order.parcels)
 
     def _submit(self, order: Order) -> Future[Outcome]:
         if self._pool is None:
@@ -154,38 +155,22 @@ class _Crew:
         self._renew()
 
 
-class _Drop:
+class _Drop(Deposit):
     """The folder where inputs lie while orders that need them are on their way."""
 
     def __init__(self, folder: Path) -> None:
+        super().__init__()
         self.folder = folder
-        self._needed: dict[str, int] = {}
-        self._newest: frozenset[str] = frozenset()
 
-    def bring(self, order: Order, parcels: Mapping[str, Parcel]) -> None:
-        """Write what is not there yet."""
+    def put(self, name: str, parcel: Parcel) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
-        before, self._newest = self._newest, frozenset(parcels)
-        for name, parcel in parcels.items():
-            if name not in self._needed:
-                temporary = self.folder / f"{name}.tmp"
-                with open(temporary, "wb") as file:
-                    np.savez(file, allow_pickle=False, **parcel)
-                os.replace(temporary, self._file(name))
-            self._needed[name] = self._needed.get(name, 0) + 1
-        self._tidy(before)
+        temporary = self.folder / f"{name}.tmp"
+        with open(temporary, "wb") as file:
+            np.savez(file, allow_pickle=False, **parcel)
+        os.replace(temporary, self._file(name))
 
-    def leave(self, order: Order) -> None:
-        """Count an order as done; what nobody needs goes, except for what came last."""
-        for name in order.parcels:
-            self._needed[name] -= 1
-        self._tidy(order.parcels)
-
-    def _tidy(self, names: Iterable[str]) -> None:
-        for name in names:
-            if name in self._needed and not self._needed[name] and name not in self._newest:
-                del self._needed[name]
-                self._file(name).unlink(missing_ok=True)
+    def remove(self, name: str) -> None:
+        self._file(name).unlink(missing_ok=True)
 
     def _file(self, name: str) -> Path:
         return self.folder / f"{name}.npz"
