@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
@@ -28,11 +27,12 @@ def picture_texts(made: Mapping[str, Any], result: Result | None) -> dict[str, s
         Of the column that was chosen, if it had finished.
     """
     from texlab_core.documents.reading import KEY
-    from texlab_core.documents.recipe import recipe_json
+    from texlab_core.documents.recipe import written_recipe
+    from texlab_core.files.strict_json import packed
 
-    texts = {TAB_KEY: _json(dict(made))}
+    texts = {TAB_KEY: packed(dict(made))}
     if result is not None:
-        texts[KEY] = _json(recipe_json(result))
+        texts[KEY] = written_recipe(result)
     return texts
 
 
@@ -53,6 +53,7 @@ def encode_picture(suffix: str, picture: Picture, texts: Mapping[str, str]) -> b
     ValueError
         When the suffix is another one.
     """
+    from texlab_core.files.strict_json import packed
     from texlab_core.images.formats.writing import encode_png
 
     if suffix not in SUFFIXES:
@@ -64,10 +65,6 @@ def encode_picture(suffix: str, picture: Picture, texts: Mapping[str, str]) -> b
     inside = base64.b64encode(png).decode("ascii")
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-        f'viewBox="0 0 {width} {height}">\n<metadata>{escape(_json(dict(texts)))}</metadata>\n'
+        f'viewBox="0 0 {width} {height}">\n<metadata>{escape(packed(dict(texts)))}</metadata>\n'
         f'<image width="{width}" height="{height}" href="data:image/png;base64,{inside}"/>\n</svg>\n'
     ).encode()
-
-
-def _json(data: dict[str, Any]) -> str:
-    return json.dumps(data, separators=(",", ":"), allow_nan=False)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import json
-import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from texlab_core.documents.reading import KEY
-from texlab_core.documents.recipe import recipe_json
+from texlab_core.documents.recipe import written_recipe
+from texlab_core.documents.record import encode_result
 from texlab_core.findings.diagnosis import findings_of
-from texlab_core.images.formats.volumes import encode_volume
-from texlab_core.images.formats.writing import encode_image, encode_png, quantize
+from texlab_core.images.formats.writing import encode_png, quantize
 from texlab_core.measures.registry import measure_all, measure_quick
 from texlab_core.measures.subject import PreparedCache, Subject
 
@@ -40,7 +37,7 @@ class Picture:
     sha256
         Of the pixels before they were rounded: shape and float32 values.
     measures
-        Numbers by name; None where one is not finite.
+        Numbers by name.
     findings
         What is wrong with it, one sentence each.
     notes
@@ -52,7 +49,7 @@ class Picture:
     png: bytes
     thumbnail: bytes
     sha256: str
-    measures: Mapping[str, float | None] = field(default_factory=dict)
+    measures: Mapping[str, float] = field(default_factory=dict)
     findings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     suffix: str = ".png"
@@ -70,22 +67,18 @@ def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None =
     measures
         Ids of the measures to take; None takes those that cost next to nothing.
     """
-    recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
     whole = result.image if result.volume is None else result.volume
     subject = Subject.of_result(result, _prepared())
     taken = measure_quick(subject) if measures is None else measure_all(subject, measures)
     digest = hashlib.sha256(f"{whole.shape}".encode())
     digest.update(whole.tobytes())
-    if result.volume is None:
-        suffix, file = ".png", encode_image("result.png", result.image, bits=bits, text={KEY: recipe})
-    else:
-        suffix, file = ".tif", encode_volume("result.tif", result.volume, bits=bits, info=recipe)
+    suffix = ".png" if result.volume is None else ".tif"
     return Picture(
-        png=file,
+        png=encode_result(result, f"result{suffix}", bits=bits, recipe=written_recipe(result)),
         suffix=suffix,
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
-        measures=dict(taken),
+        measures=taken,
         findings=tuple(each.sentence for each in findings_of(result, _prepared())),
         notes=result.notes,
     )
@@ -108,7 +101,3 @@ def thumbnail(image: FloatImage, longest: int = THUMBNAIL) -> bytes:
         size = max(1, round(width * scale)), max(1, round(height * scale))
         small = cv2.resize(image, size, interpolation=cv2.INTER_AREA).reshape(size[1], size[0], -1)
     return encode_png(quantize(small, 255))
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

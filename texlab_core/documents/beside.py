@@ -39,15 +39,10 @@ def write_with_recipe(path: str | os.PathLike[str], data: bytes, recipe: str) ->
         When one of them cannot be written, or something else than a recipe lies there; then both stay as they
         were.
     """
-    target, beside = Path(path), sidecar(path)
-    new = json.loads(recipe) | {_OF: hashlib.sha256(data).hexdigest()}
-    meanwhile = new
-    if check_beside(path).exists() and (old := _load(beside)) is not None:
-        meanwhile = new | {_BEFORE: {key: value for key, value in old.items() if key != _BEFORE}}
-    write_together(
-        {target: data, beside: _packed(new)},
-        manifest=(beside, _packed(meanwhile)),
-    )
+    digest = hashlib.sha256(data).hexdigest()
+    beside, meanwhile = sidecar(path), sidecar_bytes(path, recipe, digest)
+    new = _packed(json.loads(recipe) | {_OF: digest})
+    write_together({Path(path): data, beside: new}, manifest=(beside, meanwhile))
 
 
 def check_beside(path: str | os.PathLike[str]) -> Path:
@@ -114,4 +109,4 @@ def _load(beside: Path) -> dict[str, Any] | None:
 
 
 def _packed(recipe: dict[str, Any]) -> bytes:
-    return json.dumps(recipe, separators=(",", ":"), allow_nan=False).encode()
+    return strict_json.packed(recipe).encode()

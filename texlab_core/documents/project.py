@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -209,7 +208,7 @@ def _put(given: Input, files: dict[str, bytes]) -> str:
         if key in entry and entry[key]["encoding"] == "png":
             pictures[key] = base64.b64decode(entry[key]["base64"])
             entry[key] = {"encoding": "png"}
-    text = json.dumps(entry, separators=(",", ":"), allow_nan=False).encode()
+    text = strict_json.packed(entry).encode()
     digest = hashlib.sha256(text)
     for picture in pictures.values():
         digest.update(picture)

@@ -11,6 +11,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.run import versions
 from texlab_core.engine.sizes import size_to_json
 from texlab_core.errors import InputError, RecipeError
+from texlab_core.files.strict_json import packed
 from texlab_core.images.exemplar import as_exemplar, as_first_exemplar, take
 
 if TYPE_CHECKING:
@@ -243,6 +244,11 @@ class Recipe:
             return Job(method=self.method, inputs=inputs, params=self.params, size=self.size, seed=self.seed)
         except InputError as error:
             raise RecipeError(f"The recipe cannot be followed: {error}") from error
+
+
+def written_recipe(result: Result) -> str:
+    """Return the recipe of a result as files carry it: JSON on one line."""
+    return packed(recipe_json(result))
 
 
 def recipe_json(result: Result) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from pathlib import Path
@@ -16,6 +15,7 @@ from texlab_core.documents.reading import KEY, read_recipe
 from texlab_core.documents.recipe import Recipe, RecipeInput, recipe_json
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.sizes import size_to_json
+from texlab_core.files.strict_json import packed
 from texlab_core.files.whole import write_together
 from texlab_core.images.formats.maps import made_folder, map_files, save_maps, unfinished
 from texlab_core.images.formats.volumes import check_volume_format, default_volume_bits, encode_volume
@@ -88,7 +88,7 @@ def save_result(
     bits = result_bits(result, path) if bits is None else bits
     suffix = check_result_format(path, bits, len(result.job.size))
     held = recipe_json(result)
-    recipe = json.dumps(held, separators=(",", ":"), allow_nan=False)
+    recipe = packed(held)
     notes = kept_notes(held["inputs"])
     made = {} if maps is None else map_files(result, Path(maps), spare=[path, sidecar(path), *spare])
     data = encode_result(result, path, bits=bits, alpha=alpha, quality=quality, recipe=recipe)

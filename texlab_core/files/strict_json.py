@@ -124,6 +124,11 @@ def dumps(data: object) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
+def packed(data: object) -> str:
+    """Return JSON text for programs: on one line, otherwise as :func:`dumps`."""
+    return json.dumps(data, separators=(",", ":"), allow_nan=False)
+
+
 class _Refused(ValueError):
     """Found while parsing; the message continues a sentence that starts with the document's name."""
 

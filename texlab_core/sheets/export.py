@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
 
 from texlab_core.documents.beside import check_beside, sidecar, sidecar_bytes
-from texlab_core.documents.recipe import recipe_json
+from texlab_core.documents.recipe import written_recipe
 from texlab_core.documents.record import (
     carried_alpha,
     check_result_format,
@@ -277,7 +276,7 @@ def _is_beside(export: Export, path: Path) -> bool:
 
 def _files(export: Export, result: Result, path: Path) -> dict[Path, bytes]:
     bits = result_bits(result, path) if export.bits is None else export.bits
-    recipe = json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
+    recipe = written_recipe(result)
     alpha = carried_alpha(result) if result.volume is None and can_hold_alpha(path) else None
     inside = recipe if export.recipe == "inside" else None
     data = encode_result(result, path, bits=bits, alpha=alpha, quality=export.quality, recipe=inside)

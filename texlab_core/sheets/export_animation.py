@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 
 from texlab_core.documents.beside import write_with_recipe
 from texlab_core.documents.reading import KEY
-from texlab_core.documents.recipe import recipe_json
+from texlab_core.documents.recipe import written_recipe
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError, ParamError
@@ -265,7 +264,7 @@ def write_animation(
         if should_stop is not None and should_stop():
             raise Cancelled
 
-    recipe = None if result is None else json.dumps(recipe_json(result), separators=(",", ":"), allow_nan=False)
+    recipe = None if result is None else written_recipe(result)
     text = None if recipe is None else {KEY: recipe}
     target = Path(path)
     if is_sequence(target):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 from texlab_core.engine.registry import find_method
@@ -113,13 +112,14 @@ def write_sheet(
         When the sheet would be too large, or cannot be written.
     """
     from texlab_core.engine.run import versions
+    from texlab_core.files.strict_json import packed
     from texlab_core.files.whole import write_whole
     from texlab_core.images.formats.writing import encode_png
     from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
     across = sheet_columns(sweep, columns)
     recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
-    text = json.dumps(recipe, separators=(",", ":"), allow_nan=False)
+    text = packed(recipe)
     if is_figure(path):
         heads = _heads(sweep)
         page = figure_page(

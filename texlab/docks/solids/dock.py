@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -318,13 +317,13 @@ class SolidsDock(FramedDock):
         shot = Shot(shown, view, motion, answer.place)  # type: ignore[arg-type]
 
         def save(should_stop: Callable[[], bool]) -> str:
-            from texlab_core.documents.recipe import recipe_json
+            from texlab_core.documents.recipe import written_recipe
 
             def look() -> None:
                 if should_stop():
                     raise Cancelled
 
-            recipe = json.dumps(recipe_json(answer.result), separators=(",", ":"), allow_nan=False)
+            recipe = written_recipe(answer.result)
             exemplar: ImageInput | Any = answer.result.job.inputs.get("exemplar")
             pixels = getattr(exemplar, "pixels", None)
             save_shot(path, answer.volume, shot, recipe=recipe, exemplar=pixels, look=look)
