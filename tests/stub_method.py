@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -71,14 +70,15 @@ STUB = Method(
 )
 
 
+def know(monkeypatch, methods):
+    """Make the registry hold these methods and no others."""
+    monkeypatch.setattr(registry._METHODS, "all", lambda: methods)
+
+
 @pytest.fixture
 def stub(monkeypatch):
     """Make the registry hold the stub (and what it holds anyway)."""
-    original = registry.methods
-    known = dict(original()) | {"stub": STUB}
-    for name, module in list(sys.modules.items()):
-        if name.startswith("texlab") and getattr(module, "methods", None) is original:
-            monkeypatch.setattr(module, "methods", lambda: known)
+    know(monkeypatch, dict(registry.methods()) | {"stub": STUB})
     analyses.clear()
     running.clear()
     return STUB

@@ -11,7 +11,7 @@ from pathlib import PureWindowsPath
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from stub_method import STUB, StubParams, stub  # noqa: F401
+from stub_method import STUB, StubParams, know, stub  # noqa: F401
 
 from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name, find_preset
 from texlab_core.documents.presets import (
@@ -23,7 +23,6 @@ from texlab_core.documents.presets import (
     read_preset,
     write_preset,
 )
-from texlab_core.engine import registry
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
 from texlab_core.errors import InputError
@@ -242,7 +241,7 @@ def test_names_that_share_a_file_name_get_two_files(tmp_path):
 
 def test_one_name_for_two_methods(monkeypatch):
     known = {"stub": STUB, "other": dataclasses.replace(STUB, id="other")}
-    monkeypatch.setattr(registry, "methods", lambda: known)
+    know(monkeypatch, known)
     both = (make("a"), make("a", method="other", parameters={}))
     assert pick(both, "a", "other").method == "other"
     assert pick(both, "stub/a").method == "stub"

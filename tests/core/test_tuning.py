@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pytest
+from stub_method import know
 
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.documents.presets import write_preset
@@ -77,7 +78,7 @@ def job(monkeypatch: pytest.MonkeyPatch) -> Job:
         analyze=_analyze, synthesize=_synthesize,
     )  # fmt: skip
     known = dict(registry.methods()) | {"hill": hill}
-    monkeypatch.setattr(registry, "methods", lambda: known)
+    know(monkeypatch, known)
     exemplar = as_exemplar(np.full((16, 16, 1), 0.5, np.float32))
     return Job(method="hill", inputs={"exemplar": exemplar}, size=(16, 16))
 
