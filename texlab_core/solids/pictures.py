@@ -167,21 +167,6 @@ def magnification(shape: tuple[int, ...]) -> int:
     return max(1, -(-LEAST_SIDE // max(shape[:3])))
 
 
-def turn_frames(
-    volume: FloatVolume,
-    view: View,
-    turn: Turn,
-    size: tuple[int, int] = (400, 400),
-    *,
-    background: Colour = DARK,
-    look: Callable[[], None] = go_on,
-) -> Iterator[NDArray[np.uint8]]:
-    """Yield the pictures of a whole turn of the object, (H, W, 3) uint8 each; the last leads on to the first."""
-    for frame in range(turn.frames):
-        turned = view.turned(360 * frame / turn.frames)
-        yield render(volume, turned, size, background=background, smooth=True, look=look)
-
-
 def walk_frames(volume: FloatVolume, walk: Walk) -> Iterator[NDArray[np.uint8]]:
     """Yield all slices of a cut in their order, (H, W, 3) uint8 each, small ones magnified."""
     factor = magnification(volume.shape)
