@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from texlab_core.errors import ParamError
 from texlab_core.methods.de_bonet.sampling import match_chain
 
 if TYPE_CHECKING:
@@ -175,11 +174,7 @@ def explain(sampling: Sampling, row: int, column: int) -> Explanation:
         When the pixel is not in the output.
     """
     grid = sampling.grid
-    height, width = grid.shape(0)
-    for name, value, limit in (("row", row, height), ("column", column, width)):
-        if not 0 <= value < limit:
-            raise ParamError(name, f"a whole number from 0 to {limit - 1}", value)
-    place = grid.location(0, row, column)
+    place = grid.checked_location(0, row, column)
     chain = match_chain(sampling, 1, place >> 2) if grid.depth else []
     chain.append(np.empty(0, np.int32))
     above: NDArray[np.int32] | None = None

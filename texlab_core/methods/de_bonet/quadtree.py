@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.errors import ParamError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -68,6 +70,14 @@ class Grid:
         places[order, 0] = np.arange(height, dtype=np.int32)[:, None]
         places[order, 1] = np.arange(width, dtype=np.int32)[None, :]
         return places
+
+    def checked_location(self, level: int, row: int, column: int) -> int:
+        """Return :meth:`location`; raises ``ParamError`` where a level has no such row or column."""
+        height, width = self.shape(level)
+        for name, value, limit in (("row", row, height), ("column", column, width)):
+            if not 0 <= value < limit:
+                raise ParamError(name, f"a whole number from 0 to {limit - 1}", value)
+        return self.location(level, row, column)
 
     def location(self, level: int, row: int, column: int) -> int:
         """Return the location at a row and column of a level."""

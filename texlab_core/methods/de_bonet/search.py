@@ -284,11 +284,7 @@ def search(
         When the location is not in the output, or another parameter is out of range.
     """
     index = KeyIndex(sampling, level, components) if index is None else index
-    height, width = sampling.grid.shape(level)
-    for name, value, limit in (("row", row, height), ("column", column, width)):
-        if not 0 <= value < limit:
-            raise ParamError(name, f"a whole number from 0 to {limit - 1}", value)
-    place = sampling.grid.location(level, row, column)
+    place = sampling.grid.checked_location(level, row, column)
     blank = _verified(sampling, level, place, np.arange(index.structures, dtype=np.int32))
     under_keys = index.candidates(place)
     keyed = _verified(sampling, level, place, under_keys)
