@@ -20,7 +20,6 @@ from texlab_core.solids.pictures import (
     Place,
     Turn,
     Walk,
-    check_place,
     panel,
     walk_frames,
 )
@@ -123,8 +122,7 @@ def frames(
     if isinstance(shot.motion, Walk):
         yield from walk_frames(volume, shot.motion)
     elif shot.show == "slices":
-        place = None if shot.place is None else check_place(shot.place, volume.shape)
-        yield panel(volume, shot.view, place, background=shot.background, look=look)
+        yield panel(volume, shot.view, shot.place, background=shot.background, look=look)
     else:
         count = 1 if shot.motion is None else shot.motion.frames
         for frame in range(count):
