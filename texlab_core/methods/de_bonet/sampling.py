@@ -41,7 +41,6 @@ STORED_MEMBERS = 2**24
 STORED_NODES = 2**20
 # The sets of level 1 are used at once and not stored.
 NODES_AT_ONCE = 2**13
-_MASK = np.uint64(2**64 - 1)
 
 
 class Sets(NamedTuple):

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from texlab_core.methods.de_bonet.quadtree import Grid
     from texlab_core.methods.de_bonet.sampling import Progress
 
-MOST_ORIENTATIONS = steerable.MAX_ORIENTATIONS
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SteerableAnalysis(Analysis):

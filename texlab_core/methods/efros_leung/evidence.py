@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from texlab_core.engine.steps import FloatImage
     from texlab_core.methods.efros_leung.explain import Grown
 
-_T = TypeVar("_T")
 _PIXELS_AT_ONCE = 2**17
 _BINS = 64
 UNITS = {"ssd": "gray levels²", "flat-ssd": "gray levels²", "sad": "gray levels", "ncc": ""}
