@@ -16,11 +16,11 @@ from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.heeger_bergen.analysis import analyze
-from texlab_core.methods.mixture.blending import Recipe, blend, colour_axes, covariance_mean, quantile_mean
+from texlab_core.methods.mixture.blending import Recipe, blend, covariance_mean, quantile_mean
 from texlab_core.methods.mixture.common import Common
 from texlab_core.methods.mixture.method import weights
 from texlab_core.methods.mixture.params import MixtureParams, shares
-from texlab_core.transforms.colour import principal_axes
+from texlab_core.transforms.colour import axes_of_covariance, principal_axes
 from texlab_core.work.tasks import crew, finish
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ def test_axes_of_a_covariance_are_those_of_the_image() -> None:
     image = texture(30, 30)
     axes = principal_axes(image.pixels)
     scaled = axes.directions * axes.spread[:, None]
-    found = colour_axes(axes.mean, scaled.T @ scaled, 3)
+    found = axes_of_covariance(axes.mean, scaled.T @ scaled, 3)
     np.testing.assert_allclose(found.directions, axes.directions, atol=1e-9)
     np.testing.assert_allclose(found.spread, axes.spread, rtol=1e-9)
 

@@ -90,14 +90,22 @@ def principal_axes_task(pixels: NDArray[Any]) -> Task[ColourAxes]:
     for one, other in combinations_with_replacement(range(channels), 2):
         covariance[one, other] = covariance[other, one] = np.mean(centred[one] * centred[other])
         yield many
+    return axes_of_covariance(mean, covariance, channels)
+
+
+def axes_of_covariance(mean: NDArray[np.float64], covariance: NDArray[np.float64], count: int) -> ColourAxes:
+    """Return the principal axes of colours of this mean, (C,), and covariance, (C, C): at most ``count``.
+
+    Axes with a standard deviation below 1e-3 are dropped; the first one is kept unless the colours are constant.
+    """
     values, vectors = np.linalg.eigh(covariance)
     spread = np.sqrt(np.maximum(values[::-1], 0))
     directions = vectors.T[::-1]
     # An axis points to where its largest component is positive: the sign is not left to the library.
     largest = np.argmax(np.abs(directions), axis=1)
     directions = directions * np.sign(directions[np.arange(len(directions)), largest])[:, None]
-    keep = spread >= SMALLEST_SPREAD
-    keep[0] = spread[0] >= CONSTANT_SPREAD
+    keep = (spread >= SMALLEST_SPREAD) & (np.arange(len(spread)) < count)
+    keep[0] = count > 0 and spread[0] >= CONSTANT_SPREAD
     return ColourAxes(mean, np.ascontiguousarray(directions[keep]), spread[keep])
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from texlab_core.methods.heeger_bergen.analysis import PlaneModel, Target, TextureModel
 from texlab_core.stats.histogram import resample
-from texlab_core.transforms.colour import CONSTANT_SPREAD, SMALLEST_SPREAD, ColourAxes
+from texlab_core.transforms.colour import axes_of_covariance
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -90,19 +90,6 @@ def _roots(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     return (vectors * roots) @ vectors.T, (vectors / roots) @ vectors.T
 
 
-def colour_axes(mean: NDArray[np.float64], covariance: NDArray[np.float64], count: int) -> ColourAxes:
-    """Return the principal axes of a Gaussian, at most ``count``, with the signs of those of an image."""
-    values, vectors = np.linalg.eigh(covariance)
-    spread = np.sqrt(np.maximum(values[::-1], 0))
-    directions = vectors.T[::-1]
-    largest = np.argmax(np.abs(directions), axis=1)
-    directions = directions * np.sign(directions[np.arange(len(directions)), largest])[:, None]
-    keep = (spread >= SMALLEST_SPREAD) & (np.arange(len(spread)) < count)
-    # The first axis of a texture that hardly varies is kept, as of an image.
-    keep[0] = count > 0 and spread[0] >= CONSTANT_SPREAD
-    return ColourAxes(mean, np.ascontiguousarray(directions[keep]), spread[keep])
-
-
 class Recipe:
     """What every part of a mixture takes from each exemplar: one weight for each, adding up to 1."""
 
@@ -140,7 +127,7 @@ def blend(exemplars: Sequence[Common], recipe: Recipe) -> Task[TextureModel]:
     for channel in range(len(mean)):
         palette.append(quantile_mean([each.palette[channel] for each in exemplars], recipe.colours))
         yield palette[-1].size
-    axes = colour_axes(mean, covariance, max(len(each.planes) for each in exemplars))
+    axes = axes_of_covariance(mean, covariance, max(len(each.planes) for each in exemplars))
     planes = []
     for axis in range(len(axes.spread)):
         targets = [each.planes[axis] if axis < len(each.planes) else None for each in exemplars]
