@@ -124,6 +124,14 @@ def around(odd_sides: OddSides) -> Around:
     return "spread" if odd_sides == "spread" else "periodic"
 
 
+def expected_work(samples: int, pyramid: Pyramid, orientations: int, border: Border) -> int:
+    """Return about how many samples the analysis of an image of so many works through."""
+    if pyramid != "steerable":
+        return 6 * samples
+    # Every band is computed, on the mirrored plane, and sorted.
+    return samples * (4 if border == "reflect" else 1) * (8 * orientations // 3 + 4)
+
+
 def analyze(
     image: FloatImage,
     pyramid: Pyramid,

@@ -159,10 +159,8 @@ def analyze(inputs: Inputs, params: HeegerBergenParams) -> Generator[Step, None,
         work = analysis.analyze(
             image, params.pyramid, params.scales, params.orientations, params.border, team, params.odd_sides
         )
-        total, done = image.size * 6, 0
-        if params.pyramid == "steerable":
-            # Every band is computed, on the mirrored plane, and sorted.
-            total = image.size * (4 if params.border == "reflect" else 1) * (8 * params.orientations // 3 + 4)
+        total = analysis.expected_work(image.size, params.pyramid, params.orientations, params.border)
+        done = 0
 
         def step(samples: int) -> Step:
             nonlocal done

@@ -54,13 +54,12 @@ def analyze(inputs: Inputs, params: SolidParams) -> Generator[Step, None, SolidM
     """Sort the pixels and the subbands of every colour axis."""
     image = exemplar_of(inputs).pixels
     pyramids: list[analysis.Pyramid] = ["laplacian", "steerable"] if params.kind == "mixed" else ["laplacian"]
-    mirrored = 4 if params.border == "reflect" else 1
-    totals = {"laplacian": 6 * image.size, "steerable": image.size * mirrored * (8 * params.orientations // 3 + 4)}
-    total, models = sum(totals[each] for each in pyramids), []
+    totals = [analysis.expected_work(image.size, each, params.orientations, params.border) for each in pyramids]
+    total, models = sum(totals), []
     with crew() as team:
         for index, pyramid in enumerate(pyramids):
-            done = sum(totals[each] for each in pyramids[:index])
-            most = done + totals[pyramid]
+            done = sum(totals[:index])
+            most = done + totals[index]
 
             def step(samples: int, most: int = most) -> Step:
                 nonlocal done

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from texlab_core.methods.heeger_bergen.analysis import band_keys
 from texlab_core.methods.heeger_bergen.rounds import match
 from texlab_core.methods.solid.slices import SlicePlan, match_slices
 from texlab_core.stats.histogram import match_ranks_in_place
@@ -91,7 +92,7 @@ class Plan:
     @property
     def keys(self) -> tuple[BandKey, ...]:
         """Places of the solid's own bands, from fine to coarse."""
-        return (*(BandKey("bandpass", level) for level in range(self.levels)), BandKey("lowpass", self.levels))
+        return band_keys("laplacian", self.levels, 0)
 
     @property
     def labels(self) -> tuple[str, ...]:
