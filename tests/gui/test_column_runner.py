@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.stub_method import StubParams, analyses, exemplar, stub  # noqa: F401
-from texlab.runs.column_run import Drafted, Finished, Progress, Waits
+from texlab.runs.column_run import Drafted, Finished, Measured, Progress, Waits
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.sweep_run import SweepRun, sweep_of
@@ -105,6 +105,22 @@ def test_the_last_result_stays_while_a_control_is_dragged(runner: Any) -> None:
     assert runner.scene.draft
     start(runner)
     assert (runner.scene.result, runner.scene.draft) == (None, False)
+
+
+def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
+    start(runner)
+    first, second = finished((96, 128), 0.01), finished((96, 128), 0.02, draft=True)
+    runner._finished(first)
+    runner._finished(Measured({"d": 1.0}, (96, 128)))
+    start(runner, draft=True)
+    runner._finished(second)
+    # The newer picture is shown with the numbers of the one before, until it has its own.
+    assert (runner.scene.result, dict(runner.scene.measures)) == (second.result, {"d": 1.0})
+    assert len(runner._shared.points.points) == 1
+    runner._finished(Measured({"d": 2.0}, (96, 128)))
+    points = runner._shared.points.points
+    assert [each.cell.measures for each in points] == [{"d": 1.0}, {"d": 2.0}]
+    assert [each.cell.job.key for each in points] == [each.result.job.key for each in (first, second)]
 
 
 def test_a_draft_of_the_methods_own_is_no_result(runner: Any) -> None:

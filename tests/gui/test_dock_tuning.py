@@ -36,6 +36,7 @@ from texlab.state.scene import ColumnScene, Scene
 from texlab.state.session import Column, Sample, Session, State
 from texlab.state.sweeps import ShownCell, SweepScene
 from texlab.state.tuning import TuningPlan, TuningScene
+from texlab.style.pictures import to_picture
 from texlab.style.theme import DARK, LIGHT
 from texlab.window.carrier import Carrier
 from texlab_core.engine.job import Job
@@ -129,19 +130,21 @@ def test_finished_runs_are_kept_once_and_the_oldest_go():
     def column(level, measures, **more):
         result = Result(image=image, job=job_of(level), model=None, elapsed_s=0.1, versions={})
         fields = {"id": 3, "method": "stub", "title": "Stub", "params": StubParams(), "status": "finished"}
+        fields["picture"] = to_picture(image)
         return ColumnScene(**(fields | {"result": result, "measures": measures} | more))
 
     first, later = {D: -3.0}, {D: -3.0, V: 0.5}
-    kept.note([column(0.5, first), column(1.0, {}), column(2.0, first, draft=True)])
-    kept.note([column(0.5, later)])
+    for each in (column(0.5, first), column(1.0, {}), column(2.0, first, draft=True), column(0.5, later)):
+        kept.note(each)
     (only,) = kept.points
     assert only.cell.measures is later
     assert np.array_equal(only.picture, small(image))
     assert max(only.picture.shape[:2]) <= 128
     before = kept.points
-    kept.note([column(0.5, later)])
+    kept.note(column(0.5, later))
     assert kept.points is before
-    kept.note([column(0.5 + place / 1000, dict(later)) for place in range(1, MOST + 1)])
+    for place in range(1, MOST + 1):
+        kept.note(column(0.5 + place / 1000, dict(later)))
     assert len(kept.points) == MOST
     assert kept.points[-1].cell.job.params.level == 0.5 + MOST / 1000
 

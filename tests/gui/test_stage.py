@@ -28,10 +28,11 @@ from texlab.columns.history_popup import HistoryPopup
 from texlab.columns.numbers_popup import NumbersPopup
 from texlab.columns.status import figures
 from texlab.columns.titles import titles
-from texlab.runs.past import measured, remembered, small
+from texlab.runs.past import SIDE, measured, remembered
 from texlab.state.difference import difference
 from texlab.state.scene import ColumnScene, Past
 from texlab.state.session import Session
+from texlab.style.pictures import thinned
 from texlab.widgets.tables import make_quiet, table_text
 from texlab.window.stage_settings import SURROUNDS
 from texlab_core.engine.params import describe
@@ -581,7 +582,7 @@ def test_the_history_of_a_column_is_short_and_holds_every_job_once() -> None:
     params = methods()["msg"].params()
 
     def past(key: int) -> Past:
-        return Past(key, "hash", "msg", params, (), (8, 8), key, small(np.full((300, 200, 3), key, np.uint8)))
+        return Past(key, "hash", "msg", params, (), (8, 8), key, thinned(np.full((300, 200, 3), key, np.uint8), SIDE))
 
     assert past(0).thumbnail.shape == (60, 40, 3)
     history: tuple[Past, ...] = ()

@@ -23,6 +23,7 @@ from texlab.runs.column_run import (
     with_exemplar,
 )
 from texlab.runs.drafts import draft_size
+from texlab.runs.kept_points import KeptPoints
 from texlab.runs.kept_results import KeptResults
 from texlab.runs.past import measured, past_of, remembered
 from texlab.runs.slots import Rank, Slots
@@ -47,13 +48,14 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Shared:
-    """What all columns share: places, analyses, what is loaded, measured parts of exemplars, finished results."""
+    """What all columns share: places, analyses, what is loaded, measured parts of exemplars, what has finished."""
 
     slots: Slots
     cache: AnalysisCache
     warmth: Warmth
     prepared: PreparedCache = dataclasses.field(default_factory=PreparedCache)
     kept: KeptResults = dataclasses.field(default_factory=KeptResults)
+    points: KeptPoints = dataclasses.field(default_factory=KeptPoints)
 
 
 # While a control is dragged, numbers that are older than this are finished before the next picture.
@@ -257,7 +259,7 @@ class ColumnRunner(QObject):
 
     def _progressed(self, report: Progress | Waits | Measured) -> None:
         if isinstance(report, Measured):
-            self._show(measures=report.measures, measured_size=report.size)
+            self._show_measures(report)
             return
         if isinstance(report, Waits):
             self._show(message=report.reason)
@@ -279,7 +281,7 @@ class ColumnRunner(QObject):
             history = self.scene.history
             if not self.scene.draft and self.scene.result is not None:
                 history = measured(history, self.scene.result.job.key, end.measures)
-            self._show(measures=end.measures, measured_size=end.size, findings=end.findings, history=history)
+            self._show_measures(end, findings=end.findings, history=history)
             return
         self._came(end)
         if not self.worker.behind and self._exemplar is not None:
@@ -287,6 +289,10 @@ class ColumnRunner(QObject):
             result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
             self._measuring = True
             self.worker.submit(MeasureRun(image, self._exemplar, result, self._shared.prepared, self.scene.draft))
+
+    def _show_measures(self, found: Measured, **more: Any) -> None:
+        self._show(measures=found.measures, measured_size=found.size, **more)
+        self._shared.points.note(self.scene)
 
     def _came(self, end: Finished | Drafted) -> None:
         behind = self.worker.behind

@@ -13,7 +13,6 @@ from texlab.runs.column_run import with_exemplar
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
-from texlab.runs.kept_points import KeptPoints
 from texlab.runs.slots import Slots
 from texlab.runs.sweep_runner import SweepRunner
 from texlab.runs.tuning_runner import TuningRunner
@@ -86,7 +85,6 @@ class Controller(QObject):
         self._sweeps.changed.connect(self._refresh.start)
         self._tuning = TuningRunner(self.slots, self.warmth, self)
         self._tuning.changed.connect(self._refresh.start)
-        self._points = KeptPoints()
         self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
@@ -108,7 +106,6 @@ class Controller(QObject):
         columns = tuple(
             self._runners[column.id].scene for column in self.session.state.columns if column.id in self._runners
         )
-        self._points.note(columns)
         return Scene(
             self.exemplar,
             columns,
@@ -117,7 +114,7 @@ class Controller(QObject):
             self._sweeps.scene,
             self.session.state.seed,
             self._tuning.scene,
-            self._points.points,
+            self._shared.points.points,
             self._stage_of(self.session.selected_id),
             self._lesson,
         )

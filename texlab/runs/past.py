@@ -5,9 +5,8 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from texlab.state.scene import Past
+from texlab.style.pictures import thinned
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping
@@ -23,13 +22,7 @@ def past_of(job: Job, picture: Picture) -> Past:
     """Return a finished result as history keeps it."""
     inputs = tuple((name, each) for name, each in job.inputs.items() if name not in ("exemplar", "state"))
     exemplar = job.inputs["exemplar"].sha256
-    return Past(job.key, exemplar, job.method, job.params, inputs, job.size, job.seed, small(picture))
-
-
-def small(picture: Picture) -> Picture:
-    """Return every n-th pixel of a picture, at most 64 x 64, as an array of its own."""
-    step = max(1, -(-max(picture.shape[:2]) // SIDE))
-    return np.ascontiguousarray(picture[::step, ::step])
+    return Past(job.key, exemplar, job.method, job.params, inputs, job.size, job.seed, thinned(picture, SIDE))
 
 
 def remembered(history: tuple[Past, ...], past: Past) -> tuple[Past, ...]:

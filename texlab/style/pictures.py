@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,12 @@ def to_picture(image: FloatImage) -> Picture:
     if values.shape[2] == 1:
         values = np.broadcast_to(values, (*values.shape[:2], 3))
     return np.ascontiguousarray(values)
+
+
+def thinned(pixels: NDArray[Any], side: int) -> NDArray[Any]:
+    """Return every n-th pixel, at most ``side`` x ``side``, as an array of its own."""
+    step = max(1, -(-max(pixels.shape[:2]) // side))
+    return np.ascontiguousarray(pixels[::step, ::step])
 
 
 def describe_pixel(image: FloatImage, row: int, column: int) -> str:
