@@ -157,11 +157,11 @@ def test_where_another_exemplar_stood_is_no_place_to_go_on_from(runner: Any) -> 
     assert runner.resumable
     kept = runner._kept
     # The job reads it last.
-    assert start(runner, go_on=True)["request"].make_job.args[-1] is kept
-    assert start(runner)["request"].make_job.args[-1] is None
+    assert start(runner, go_on=True)["request"].make_job.keywords["kept"] is kept
+    assert start(runner)["request"].make_job.keywords["kept"] is None
     other = exemplar(height=18)
     runner.start(COLUMN, State(None, (COLUMN,), 5, (96, 128), 2), other, go_on=True)
-    assert runner.worker.asked[-1]["request"].make_job.args[-1] is None
+    assert runner.worker.asked[-1]["request"].make_job.keywords["kept"] is None
     assert not runner.resumable
 
 

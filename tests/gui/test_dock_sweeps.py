@@ -493,6 +493,18 @@ def test_a_varied_seed_is_taken_in_the_same_step(qtbot, bench):
     assert here.params == StubParams()
 
 
+def test_a_varied_seed_is_that_of_a_column_with_its_own(qtbot, bench):
+    here = bench()
+    dock = here.dock
+    here.session.set_column_seed(1, 9)
+    set_range(qtbot, dock.panel.across, "seed", "1", "4", "4")
+    choose(qtbot, dock.panel.down.knob, "border")
+    complete(qtbot, dock)
+    click_cell(qtbot, dock, 6)
+    assert (here.session.state.seed, here.session.state.column(1).seed) == (5, 3)
+    qtbot.waitUntil(lambda: dock.sheet.canvas.marked == 6, timeout=PATIENCE_MS)
+
+
 def test_the_keyboard_takes_a_cell(qtbot, bench):
     here = bench()
     dock = here.dock

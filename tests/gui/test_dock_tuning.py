@@ -41,7 +41,7 @@ from texlab.style.theme import DARK, LIGHT
 from texlab.window.carrier import Carrier
 from texlab_core.engine.job import Job
 from texlab_core.engine.result import Result
-from texlab_core.errors import Cancelled, ParamError
+from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.methods.de_bonet.method import DeBonetParams
 from texlab_core.sheets.sweep import Cell, Sweep, Vary
 
@@ -242,6 +242,21 @@ def test_take_gives_the_column_what_was_found(qtbot, bench):
     assert dock.take_button.isEnabled() == bool(tuning.found.changes)
     dock.take()
     assert bench.session.selected_column.params == tuning.found.found
+    qtbot.waitUntil(lambda: not bench.controller.busy, timeout=PATIENCE_MS)
+
+
+def test_a_search_runs_with_the_columns_own_seed(qtbot, bench, monkeypatch):
+    bases = []
+
+    def refuse(base, knobs, **more):
+        bases.append(base)
+        raise InputError("Enough.")
+
+    monkeypatch.setattr("texlab.runs.tuning_runner.tune", refuse)
+    bench.session.set_column_seed(1, 8)
+    bench.dock.suggest()
+    qtbot.waitUntil(lambda: bench.controller.scene().tuning.problem == "Enough.", timeout=PATIENCE_MS)
+    assert [base.seed for base in bases] == [8]
     qtbot.waitUntil(lambda: not bench.controller.busy, timeout=PATIENCE_MS)
 
 

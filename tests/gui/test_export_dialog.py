@@ -11,7 +11,7 @@ from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 
-from tests.gui.conftest import ids, result_image
+from tests.gui.conftest import ids, result_image, wait_idle
 from texlab.window.export_desk import column_items, foreseen
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab_core.documents.record import read_recipe
@@ -52,6 +52,16 @@ def test_the_chosen_column_is_written_with_seeds_and_sizes(
     assert read_recipe(tmp_path / "made" / names[3]).size == (20, 24)
     qtbot.mouseClick(opened.path_button, Qt.MouseButton.LeftButton)
     assert QGuiApplication.clipboard().text().splitlines()[0] == str(tmp_path / "made" / names[0])
+
+
+def test_a_column_is_written_with_its_own_seed(explorer: Any, qtbot: Any) -> None:
+    column_id = explorer.session.selected_id
+    explorer.session.set_column_seed(column_id, explorer.session.state.seed + 6)
+    wait_idle(qtbot, explorer)
+    (item,) = column_items(explorer.controller, (column_id,))
+    assert item.job.seed == explorer.session.state.seed + 6
+    assert item.result is not None
+    assert item.result.image is result_image(explorer, column_id)
 
 
 def test_a_figure_of_all_columns(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from texlab.runs import column_run
-from texlab.runs.column_run import Finished
-from texlab.runs.column_runner import key_of
+from texlab.runs.column_run import Finished, key_of
 from texlab.runs.kept_results import KeptResults
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
@@ -106,4 +105,4 @@ def test_the_key_of_a_column_is_that_of_its_job(explorer: Explorer) -> None:
     state, exemplar = explorer.session.state, explorer.controller.exemplar
     for column in state.columns:
         job = explorer.controller.column_scene(column.id).result.job
-        assert key_of(column, exemplar, state.size_of(column), state.seed) == job.key
+        assert key_of(column, state, exemplar) == job.key

@@ -582,7 +582,8 @@ def test_the_history_of_a_column_is_short_and_holds_every_job_once() -> None:
     params = methods()["msg"].params()
 
     def past(key: int) -> Past:
-        return Past(key, "hash", "msg", params, (), (8, 8), key, thinned(np.full((300, 200, 3), key, np.uint8), SIDE))
+        picture = np.full((300, 200, 3), key, np.uint8)
+        return Past(key, "hash", "msg", params, (), (8, 8), key, thinned(picture, SIDE))
 
     assert past(0).thumbnail.shape == (60, 40, 3)
     history: tuple[Past, ...] = ()

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.state.scene import Frame
 from texlab.style.pictures import Picture, to_picture
+from texlab_core.engine.inputs import ArraysInput
+from texlab_core.engine.job import Job, job_key
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
@@ -16,14 +18,16 @@ from texlab_core.errors import Cancelled
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from texlab.state.session import Column, State
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
-    from texlab_core.engine.job import Job
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage, Step
     from texlab_core.findings.finding import Finding
     from texlab_core.measures.subject import PreparedCache
     from texlab_core.warming import Need, Warmth
+
+    Keep = Callable[[], Mapping[str, Any]]
 
 log = logging.getLogger(__name__)
 
@@ -218,3 +222,40 @@ class MeasureRun:
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
     """Return the named inputs of a column's job."""
     return {"exemplar": exemplar, **dict(inputs)}
+
+
+def key_of(column: Column, state: State, exemplar: ImageInput) -> tuple[object, ...]:
+    """Return the key of a column's job (:attr:`Job.key`), which is not made for that."""
+    inputs = with_exemplar(exemplar, column.inputs)
+    return job_key(column.method, inputs, column.params, state.size_of(column), state.seed_of(column))
+
+
+def job_of(
+    column: Column,
+    state: State,
+    exemplar: ImageInput,
+    *,
+    size: tuple[int, ...] | None = None,
+    kept: Keep | None = None,
+) -> Job:
+    """Return a column's job.
+
+    Parameters
+    ----------
+    column, state, exemplar
+        Whose job, in which state of the session, on what.
+    size
+        Of the result; None is the column's.
+    kept
+        Makes the arrays from which the job goes on; they are read now.
+
+    Raises
+    ------
+    InputError
+        When it cannot work.
+    """
+    inputs = with_exemplar(exemplar, column.inputs)
+    if kept is not None:
+        inputs["state"] = ArraysInput(kept(), "state")
+    size = state.size_of(column) if size is None else size
+    return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=state.seed_of(column))

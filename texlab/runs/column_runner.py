@@ -20,7 +20,8 @@ from texlab.runs.column_run import (
     MeasureRun,
     Progress,
     Waits,
-    with_exemplar,
+    job_of,
+    key_of,
 )
 from texlab.runs.drafts import draft_size
 from texlab.runs.kept_points import KeptPoints
@@ -29,21 +30,16 @@ from texlab.runs.past import measured, past_of, remembered
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.worker import Worker
 from texlab.state.scene import ColumnScene
-from texlab_core.engine.inputs import ArraysInput
-from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.measures.subject import PreparedCache
 from texlab_core.warming import Need, Warmth
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
+    from texlab.runs.column_run import Keep
     from texlab.state.session import Column, State
     from texlab.style.pictures import Picture
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
-
-    Keep = Callable[[], Mapping[str, Any]]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -160,13 +156,12 @@ class ColumnRunner(QObject):
         make_job = partial(
             job_of,
             column,
+            state,
             exemplar,
-            full if own_draft or size is None else size,
-            state.seed_of(column),
-            self._kept if go_on else None,
+            size=None if own_draft else size,
+            kept=self._kept if go_on else None,
         )
-        key = key_of(column, exemplar, full, state.seed_of(column))
-        kept = None if draft or go_on else self._shared.kept.get(key)
+        kept = None if draft or go_on else self._shared.kept.get(key_of(column, state, exemplar))
         if kept is not None:
             # The same job has the same bits: what was finished is shown, before anything else takes a place.
             self._run = None
@@ -335,20 +330,3 @@ class ColumnRunner(QObject):
             return
         self._live = False
         self._show(status="cancelled", message="", draft=False)
-
-
-def key_of(column: Column, exemplar: ImageInput, size: tuple[int, ...], seed: int) -> tuple[object, ...]:
-    """Return the key of a column's job (:attr:`Job.key`), which is not made for that."""
-    inputs = with_exemplar(exemplar, column.inputs)
-    hashes = tuple((name, inputs[name].sha256) for name in sorted(inputs))
-    return (column.method, hashes, column.params, size, seed)
-
-
-def job_of(
-    column: Column, exemplar: ImageInput, size: tuple[int, ...], seed: int, state: Keep | None = None
-) -> Job:
-    """Return a column's job, going on from a state that is read now."""
-    inputs = with_exemplar(exemplar, column.inputs)
-    if state is not None:
-        inputs["state"] = ArraysInput(state(), "state")
-    return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)

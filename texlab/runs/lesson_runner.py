@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.runs.column_run import ColumnRun, Loading
-from texlab.runs.column_runner import job_of, key_of
+from texlab.runs.column_run import ColumnRun, Loading, job_of, key_of
 from texlab.runs.slots import Rank
 from texlab.runs.worker import Worker
 from texlab.state.changes import sample_as_used
@@ -187,12 +186,11 @@ def _make(shared: Shared, opened: Opened, place: int, task: TaskLike) -> _Made:
                 for value in step.series.values
             ]
         for column in columns:
-            size = state.size_of(column)
-            key = key_of(column, pictures.exemplar, size, state.seed)
+            key = key_of(column, state, pictures.exemplar)
             end = shared.kept.get(key)
             if end is None:
                 Loading(shared.warmth, Need(column.method, pictures.exemplar.channels))(task)
-                run = ColumnRun(partial(job_of, column, pictures.exemplar, size, state.seed), shared.cache)
+                run = ColumnRun(partial(job_of, column, state, pictures.exemplar), shared.cache)
                 end = run(task)
                 shared.kept.put(key, end)
             keys.append(key)

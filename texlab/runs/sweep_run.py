@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from texlab.runs.column_run import TaskLike, with_exemplar
+from texlab.runs.column_run import TaskLike, job_of
 from texlab.state.sweeps import ShownCell
 from texlab.style.pictures import to_picture
-from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_text
 from texlab_core.errors import InputError
@@ -42,19 +42,15 @@ def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput
     InputError
         When it cannot be run, or would not fit in memory.
     """
-    size = state.size_of(column) if plan.side is None else (plan.side,) * find_method(column.method).dimensions
-    base = Job(
-        method=column.method,
-        inputs=with_exemplar(exemplar, column.inputs),
-        params=column.params if plan.params is None else plan.params,
-        size=size,
-        seed=state.seed_of(column),
-    )
+    if plan.params is not None:
+        column = dataclasses.replace(column, params=plan.params)
+    size = None if plan.side is None else (plan.side,) * find_method(column.method).dimensions
+    base = job_of(column, state, exemplar, size=size)
     sweep = Sweep(base, plan.axes)
     # Of solids only the slices that are shown are kept.
     if len(sweep.jobs) * math.prod(base.picture_size) > MAX_PIXELS:
         raise InputError(
-            f"{len(sweep.jobs)} cells of {size_text(size)} are more than "
+            f"{len(sweep.jobs)} cells of {size_text(base.size)} are more than "
             f"{MAX_PIXELS // 2**20} megapixels; ask for fewer or smaller cells."
         )
     return sweep

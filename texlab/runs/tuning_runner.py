@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.runs.column_run import TaskLike, with_exemplar
+from texlab.runs.column_run import TaskLike, job_of
 from texlab.runs.kept_points import small
 from texlab.runs.worker import Worker
 from texlab.state.sweeps import ShownCell
 from texlab.state.tuning import TuningScene
-from texlab_core.engine.job import Job
 from texlab_core.errors import InputError
 from texlab_core.sheets.tuning import Trial, Tuning, tune
 from texlab_core.warming import Need
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from texlab.state.session import State
     from texlab.state.tuning import TuningPlan
     from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.job import Job
     from texlab_core.sheets.sweep import Cell
     from texlab_core.sheets.sweep_running import Places
     from texlab_core.warming import Warmth
@@ -98,13 +98,7 @@ class TuningRunner(QObject):
             self._show(problem="There is no exemplar yet.")
             return
         try:
-            base = Job(
-                method=column.method,
-                inputs=with_exemplar(exemplar, column.inputs),
-                params=column.params,
-                size=state.size_of(column),
-                seed=state.seed,
-            )
+            base = job_of(column, state, exemplar)
         except InputError as error:
             self._show(problem=str(error))
             return

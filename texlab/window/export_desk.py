@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 
-from texlab.runs.column_runner import job_of
+from texlab.runs.column_run import job_of
 from texlab.runs.worker import Worker
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab_core.engine.registry import find_method
@@ -141,7 +141,7 @@ def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item
         raise InputError("The exemplar is still being read.")
     items = []
     for column in columns:
-        job = job_of(column, exemplar, state.size_of(column), state.seed, None)
+        job = job_of(column, state, exemplar)
         scene = controller.column_scene(column.id)
         result = None if scene is None else scene.result
         # While a control is dragged, the result is of what was there before.

@@ -95,14 +95,23 @@ class Job:
     @property
     def key(self) -> tuple[object, ...]:
         """What the bits of the result depend on, on one machine and one set of library versions."""
-        hashes = tuple((name, self.inputs[name].sha256) for name in sorted(self.inputs))
-        return (self.method, hashes, self.params, self.size, self.seed)
+        return job_key(self.method, self.inputs, self.params, self.size, self.seed)
 
     @property
     def analysis_key(self) -> tuple[object, ...]:
         """What the analysis depends on."""
-        hashes = tuple((name, self.inputs[name].sha256) for name in sorted(self.inputs))
-        return (self.method, hashes, self.params.analysis_key())
+        return (self.method, _hashes(self.inputs), self.params.analysis_key())
+
+
+def job_key(
+    method: str, inputs: Mapping[str, Input], params: Params, size: tuple[int, ...], seed: int
+) -> tuple[object, ...]:
+    """Return the key of a job with these parts (:attr:`Job.key`), which is neither made nor checked."""
+    return (method, _hashes(inputs), params, size, seed)
+
+
+def _hashes(inputs: Mapping[str, Input]) -> tuple[tuple[str, str], ...]:
+    return tuple((name, inputs[name].sha256) for name in sorted(inputs))
 
 
 def check_seed(seed: object) -> int:

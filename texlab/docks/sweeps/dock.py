@@ -220,11 +220,12 @@ class SweepsDock(FramedDock):
         found = None
         if sweep is not None and column is not None and sweep.base.method == column.method:
             is_seed = any(axis.name == "seed" for axis in sweep.axes)
+            seed = scene.seed if column.seed is None else column.seed
             found = next(
                 (
                     index
                     for index, job in enumerate(sweep.jobs)
-                    if job.params == column.params and (not is_seed or job.seed == scene.seed)
+                    if job.params == column.params and (not is_seed or job.seed == seed)
                 ),
                 None,
             )
