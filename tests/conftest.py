@@ -29,9 +29,6 @@ os.environ.setdefault("PYTHONHASHSEED", "0")
 settings.register_profile("texlab", deadline=None, derandomize=True, database=None)
 settings.load_profile("texlab")
 
-# What helpers assert is told as fully as what tests assert.
-pytest.register_assert_rewrite("tests.contract.cases")
-
 pytest_plugins = ["tests.coverage_floor"]
 PATIENCE_S = 20.0
 MOVE_S = 2.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from tests.contract.cases import texture
+from texlab_core.contract.cases import texture
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method

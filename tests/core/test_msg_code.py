@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.contract.cases import assert_sentence
+from texlab_core.contract.cases import check_sentence
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.spectral.codefile import CodeError, code_from_json, code_to_json, read_code, write_code
 from texlab_core.methods.spectral.encoding import encode
@@ -102,7 +102,7 @@ def test_what_does_not_fit_is_refused_in_one_sentence(path: str, value: Any, say
         code_from_json(changed(path, value), what="the code x.msg.json")
     assert says in str(caught.value)
     assert str(caught.value).startswith("The code x.msg.json")
-    assert_sentence(str(caught.value))
+    check_sentence(str(caught.value), "the refusal")
     assert len(str(caught.value)) < 400
 
 
@@ -114,7 +114,7 @@ def test_what_is_no_code_at_all_is_refused(tmp_path: Path, text: bytes) -> None:
     path.write_bytes(text)
     with pytest.raises(CodeError) as caught:
         read_code(path)
-    assert_sentence(str(caught.value))
+    check_sentence(str(caught.value), "the refusal")
     with pytest.raises(CodeError):
         read_code(tmp_path / "missing.msg.json")
 

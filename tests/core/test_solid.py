@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.contract.cases import assert_sentence, texture
+from texlab_core.contract.cases import check_sentence, texture
 from texlab_core.engine import estimate as estimates
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
@@ -151,11 +151,11 @@ def test_sides_and_memory_are_limited_before_the_start(monkeypatch: pytest.Monke
     exemplar = texture(16, 16)
     with pytest.raises(InputError, match="at most 256 voxels a side, got '257 x 9 x 8'") as caught:
         make(exemplar, (8, 9, 257))
-    assert_sentence(str(caught.value))
+    check_sentence(str(caught.value), "the refusal")
     monkeypatch.setattr(estimates, "machine_bytes", lambda: 10**8)
     with pytest.raises(InputError, match=r"of 128 x 128 x 128 needs about 0\.\d GB .* has 0\.1 GB") as caught:
         make(exemplar, (128, 128, 128))
-    assert_sentence(str(caught.value))
+    check_sentence(str(caught.value), "the refusal")
     monkeypatch.setattr(estimates, "machine_bytes", lambda: None)
     assert Job(method="solid", inputs={"exemplar": exemplar}, size=(128, 128, 128)).size == (128, 128, 128)
 

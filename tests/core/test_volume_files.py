@@ -11,7 +11,7 @@ import pytest
 import tifffile
 from PIL import Image
 
-from tests.contract.cases import assert_sentence, texture
+from texlab_core.contract.cases import check_sentence, texture
 from texlab_core.documents.beside import sidecar
 from texlab_core.documents.reading import read_recipe, recipe_text
 from texlab_core.documents.record import check_result_format, save_maps, save_result, summary
@@ -111,7 +111,7 @@ def test_what_cannot_be_written_or_read_gets_one_sentence(result: Result, tmp_pa
     ):
         with pytest.raises(ImageError, match=words) as caught:
             make()
-        assert_sentence(str(caught.value))
+        check_sentence(str(caught.value), "the refusal")
     assert check_result_format("a.tif", None, 3) == ".tif"
     assert recipe_text(tmp_path / "flat.npy") is None
 
@@ -219,7 +219,7 @@ def test_shots_that_cannot_be_get_one_sentence(result: Result) -> None:
     ):
         with pytest.raises(InputError, match=words) as caught:
             make()
-        assert_sentence(str(caught.value))
+        check_sentence(str(caught.value), "the refusal")
     with pytest.raises(ValueError, match="at least one frame"):
         encode_animation("a.gif", [])
     with pytest.raises(ValueError, match="takes no text"):

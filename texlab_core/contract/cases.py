@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from texlab_core.engine.params import describe
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.registry import Method
     from texlab_core.engine.steps import FloatImage
@@ -26,6 +29,16 @@ def promise(kept: object, sentence: str) -> None:
         raise Broken(sentence)
 
 
+@contextlib.contextmanager
+def case(what: str) -> Iterator[None]:
+    """Note the case in whatever goes wrong with it."""
+    try:
+        yield
+    except Exception as error:
+        error.add_note(what)
+        raise
+
+
 def texture(height: int, width: int, channels: int = 3) -> ImageInput:
     """Return blobs of correlated colour, the same ones on every call."""
     rng = np.random.Generator(np.random.PCG64(height * 1000 + width))
@@ -39,13 +52,31 @@ def texture(height: int, width: int, channels: int = 3) -> ImageInput:
     return as_exemplar(((smooth - low) / max(high - low, 1e-9)).astype(np.float32))
 
 
+def odd_exemplars() -> dict[str, ImageInput]:
+    """Return exemplars that are tiny, narrow, of odd sides, constant or of few colours, by what they are."""
+    checks = np.indices((16, 16)).sum(0)[..., None] % 2
+    return {
+        "2 x 2": texture(2, 2),
+        "2 x 9 in gray": texture(2, 9, 1),
+        "3 x 5": texture(3, 5),
+        "7 x 7 in gray": texture(7, 7, 1),
+        "61 x 4": texture(61, 4),
+        "13 x 31": texture(13, 31),
+        "constant": as_exemplar(np.full((16, 16, 3), (0.2, 0.4, 0.6), np.float32)),
+        "constant gray": as_exemplar(np.full((16, 16), 0.5, np.float32)),
+        "black": as_exemplar(np.zeros((9, 12), np.uint8)),
+        "one dot": as_exemplar(np.eye(1, 16 * 16, 100, dtype=np.float32).reshape(16, 16)),
+        "two colours": as_exemplar(np.where(checks, (1.0, 0, 0), (0, 0, 1.0))),
+    }
+
+
 def job(method: Method, exemplar: ImageInput | None = None, **changes: Any) -> Job:
     """Return a job of the method on a small colour texture; another one stands for every other image it needs."""
     exemplar = texture(24, 32) if exemplar is None else exemplar
     inputs: dict[str, Input] = {}
     knobs = {field.name for field in describe(method.params)}
     for spec in method.inputs:
-        if spec.name == "exemplar":
+        if spec.kind == "image" and spec.name == "exemplar":
             inputs[spec.name] = exemplar
         # A knob with the name of an input says something of that input.
         elif spec.required or spec.name in knobs:

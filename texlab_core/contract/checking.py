@@ -6,7 +6,7 @@ import inspect
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from texlab_core.contract import declarations, runs
+from texlab_core.contract import declarations, knobs, runs
 from texlab_core.contract.cases import Broken
 from texlab_core.engine.registry import failures, methods
 from texlab_core.errors import InputError
@@ -21,7 +21,7 @@ def checks() -> Mapping[str, Callable[[Method], None]]:
     """Return every check by its name, declarations first."""
     return {
         name.removeprefix("check_").replace("_", "-"): check
-        for module in (declarations, runs)
+        for module in (declarations, knobs, runs)
         for name, check in vars(module).items()
         if name.startswith("check_") and inspect.isfunction(check) and check.__module__ == module.__name__
     }
@@ -54,14 +54,19 @@ def check_method(method: Method) -> Iterator[Finding]:
         try:
             check(method)
         except Broken as broken:
-            yield Finding(method.id, name, promise, str(broken))
+            yield Finding(method.id, name, promise, f"{broken}{_notes(broken)}")
         except InputError as error:
-            yield Finding(method.id, name, promise, f"refuses the job of this check: {error}")
+            yield Finding(method.id, name, promise, f"refuses the job of this check: {error}{_notes(error)}")
         except Exception as error:
             reason = " ".join(str(error).split())
-            yield Finding(method.id, name, promise, f"raises {type(error).__name__}: {reason}")
+            yield Finding(method.id, name, promise, f"raises {type(error).__name__}: {reason}{_notes(error)}")
         else:
             yield Finding(method.id, name, promise)
+
+
+def _notes(error: Exception) -> str:
+    notes = getattr(error, "__notes__", ())
+    return f" ({'; '.join(notes)})" if notes else ""
 
 
 def methods_of(package: str) -> tuple[Method, ...]:

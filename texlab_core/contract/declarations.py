@@ -14,6 +14,7 @@ from texlab_core.engine.params import Field, describe
 from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
+    from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method
 
 
@@ -31,6 +32,17 @@ def check_identity(method: Method) -> None:
     names = [spec.name for spec in method.inputs]
     promise(len(set(names)) == len(names), f"inputs: must have different names, got {names}.")
     promise(all(spec.help for spec in method.inputs), "inputs: each must have a help text.")
+
+
+def check_defaults(method: Method) -> None:
+    """Have the same defaults everywhere: declared, in the class, of an empty document, on the command line."""
+    defaults = method.params()
+    for field in describe(method.params):
+        value = getattr(defaults, field.name)
+        promise(value == field.default, f"{field.name}: the default {field.default} becomes {value}.")
+    promise(method.params.from_json({}) == defaults, "an empty document means other values than the defaults.")
+    promise(method.params.parse({}) == defaults, "an empty command line means other values than the defaults.")
+    promise(hash(method.params()) == hash(defaults), "equal parameters must have equal hashes.")
 
 
 def check_knobs(method: Method) -> None:
@@ -77,6 +89,7 @@ def check_refusals(method: Method) -> None:
                 method.params.from_json({field.name: value})
             except ParamError as error:
                 promise(error.field == field.name, f"{field.name}: the refusal of {value!r} names {error.field}.")
+                promise(field.name in str(error), f"{field.name}: the refusal of {value!r} does not name it.")
                 check_sentence(str(error), f"{field.name}: the refusal of {value!r}")
             else:
                 promise(False, f"{field.name}: takes {value!r}, which it should refuse.")
@@ -98,14 +111,19 @@ def refused(field: Field) -> list[Any]:
 def check_round_trips(method: Method) -> None:
     """Take every setting through JSON and the command line's texts, and get it back."""
     for params in settings(method):
-        as_json = json.loads(json.dumps(params.to_json(), allow_nan=False))
-        promise(method.params.from_json(as_json) == params, f"{params}: comes back from JSON as something else.")
-        texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in as_json.items()}
-        promise(method.params.parse(texts) == params, f"{params}: comes back from its texts as something else.")
-        promise(
-            set(dict(params.analysis_key())) <= set(as_json),
-            "analysis_key: holds what is no parameter.",
-        )
+        promise_round_trip(method, params)
+
+
+def promise_round_trip(method: Method, params: Params) -> None:
+    """Check that a setting comes back from JSON and from the command line's texts."""
+    as_json = json.loads(json.dumps(params.to_json(), allow_nan=False))
+    promise(method.params.from_json(as_json) == params, f"{params}: comes back from JSON as something else.")
+    texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in as_json.items()}
+    promise(method.params.parse(texts) == params, f"{params}: comes back from its texts as something else.")
+    promise(
+        set(dict(params.analysis_key())) <= set(as_json),
+        "analysis_key: holds what is no parameter.",
+    )
 
 
 def settings(method: Method) -> list[Any]:
@@ -122,12 +140,15 @@ def settings(method: Method) -> list[Any]:
 
 
 def others(field: Field) -> list[Any]:
-    """Return values of a knob that are not its default: both ends and the middle, or the other choices."""
+    """Return values of a knob that are not its default: both ends and the middle, other choices, an example."""
     if field.kind == "bool":
         return [not field.default]
     if field.kind == "choice":
         return [each for each in field.choices if each != field.default]
-    if field.kind == "value" or field.knob.low is None or field.knob.high is None:
+    if field.kind == "value":
+        example = getattr(field.type, "example", None)
+        return [] if example is None else [each for each in (example(),) if each != field.default]
+    if field.knob.low is None or field.knob.high is None:
         return []
     low, high = field.knob.low, field.knob.high
     middle = math.sqrt(low * high) if low > 0 else (low + high) / 2

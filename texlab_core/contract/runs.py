@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+import dataclasses
+import inspect
 import itertools
+import math
 import random
 import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from texlab_core.contract.cases import Broken, check_image, check_sentence, job, promise, size_for, texture
+from texlab_core.contract.cases import (
+    Broken,
+    case,
+    check_image,
+    check_sentence,
+    job,
+    odd_exemplars,
+    promise,
+    size_for,
+    texture,
+)
 from texlab_core.contract.declarations import settings
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.run import run
 from texlab_core.engine.sizes import default_size
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.measures.registry import measure_all, measures
+from texlab_core.measures.subject import Subject
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.job import Job
     from texlab_core.engine.registry import Method
     from texlab_core.engine.result import Result
@@ -49,16 +67,22 @@ def watched(given: Job, **options: Any) -> tuple[Result, list[Step]]:
 
 def promise_same_bits(one: Result, other: Result, when: str) -> None:
     """Check that two results of one job are the same, to the last bit."""
-    promise(np.array_equal(one.image, other.image), f"the image differs {when}.")
+    promise(_same(one.image, other.image), f"the image differs {when}.")
+    promise((one.volume is None) == (other.volume is None), f"only one of them has a volume {when}.")
     if one.volume is not None and other.volume is not None:
-        promise(np.array_equal(one.volume, other.volume), f"the volume differs {when}.")
+        promise(_same(one.volume, other.volume), f"the volume differs {when}.")
     promise(one.maps.keys() == other.maps.keys(), f"the maps differ {when}.")
+    promise(one.curves.keys() == other.curves.keys(), f"the curves differ {when}.")
     promise(one.measures == other.measures, f"the measures differ {when}.")
     promise(one.notes == other.notes, f"the notes differ {when}.")
     for name in one.maps:
-        promise(np.array_equal(one.maps[name].data, other.maps[name].data), f"the map {name} differs {when}.")
+        promise(_same(one.maps[name].data, other.maps[name].data), f"the map {name} differs {when}.")
     for name in one.curves:
-        promise(np.array_equal(one.curves[name].y, other.curves[name].y), f"the curve {name} differs {when}.")
+        promise(_same(one.curves[name].y, other.curves[name].y), f"the curve {name} differs {when}.")
+
+
+def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    return one.shape == other.shape and one.dtype == other.dtype and one.tobytes() == other.tobytes()
 
 
 def check_same_bits(method: Method) -> None:
@@ -72,22 +96,8 @@ def check_same_bits(method: Method) -> None:
         cache = AnalysisCache()
         run(job(method, exemplar, size=(16, 16), seed=4), cache=cache)
         promise_same_bits(first, run(plan, cache=cache), "with a cached analysis")
-
-
-def check_cached_analysis(method: Method) -> None:
-    """Give the knobs that the analysis depends on the stage "analysis", so that it is kept only for them."""
-    exemplar = texture(20, 24)
-    cache = AnalysisCache(capacity=1000)
-    for params in settings(method):
-        try:
-            fresh = run(job(method, exemplar, params=params, size=(14, 18)))
-        except InputError:
-            continue
-        promise_same_bits(
-            fresh,
-            run(job(method, exemplar, params=params, size=(14, 18)), cache=cache),
-            f"with the analysis of other parameters ({params}): one of them needs stage='analysis'",
-        )
+        asked = run(plan, should_stop=lambda: False, cache=cache)
+        promise_same_bits(first, asked, "when it is asked whether to stop")
 
 
 def check_seeds(method: Method) -> None:
@@ -110,6 +120,7 @@ def check_no_side_effects(method: Method) -> None:
     state = random.getstate(), str(np.random.get_state())  # noqa: NPY002
     result = run(job(method, exemplar))
     promise(np.array_equal(exemplar.pixels, before), "the exemplar was changed.")
+    promise(not exemplar.pixels.flags.writeable, "the exemplar was made writeable.")
     promise(not np.shares_memory(result.image, exemplar.pixels), "the image shares memory with the exemplar.")
     same = (random.getstate(), str(np.random.get_state())) == state  # noqa: NPY002
     promise(same, "a global random generator was used; draw from streams instead.")
@@ -172,6 +183,7 @@ def check_generators(method: Method) -> None:
         ("analyze", method.analyze(plan.inputs, plan.params)),
         ("synthesize", method.synthesize(model, plan.inputs, plan.params, plan.size, Streams(plan.seed))),
     ):
+        promise(inspect.isgenerator(steps), f"{name}: must be a generator, got {type(steps).__name__}.")
         next(steps, None)
         try:
             steps.close()
@@ -204,11 +216,14 @@ def check_outputs(method: Method) -> None:
     for channels in (1, 3):
         for size in ((24, 32), (50, 17), (9, 64)):
             exemplar = texture(24, 32, channels)
-            promise_output(run(job(method, exemplar, size=size)), size_for(method, size), exemplar.pixels.shape)
+            with case(f"exemplar of {channels} channels, size {size}"):
+                result = run(job(method, exemplar, size=size))
+                promise_output(result, size_for(method, size), exemplar.pixels.shape)
 
 
 def promise_output(result: Result, size: tuple[int, ...], exemplar: tuple[int, ...]) -> None:
     """Check everything that a result holds."""
+    promise(result.job.size == size, f"the result's job must have the size {size}, got {result.job.size}.")
     check_image(result.image, (*size[-2:], exemplar[2]), "the image")
     if len(size) == 3:
         promise(result.volume is not None, "a method of three dimensions must return a volume.")
@@ -241,6 +256,7 @@ def _check_name(name: str, what: str) -> None:
 
 
 def _check_map(each: Map, size: tuple[int, ...], exemplar: tuple[int, ...], name: str) -> None:
+    promise(each.plane.data.shape[:2] == size[-2:], f"the plane of the map {name} must have the size {size[-2:]}.")
     if each.kind == "source":
         promise(each.data.shape == (*size, 2), f"the map {name} must have the shape {(*size, 2)}.")
         promise(each.data.dtype == np.int32, f"the map {name} must be int32.")
@@ -258,25 +274,54 @@ def _check_map(each: Map, size: tuple[int, ...], exemplar: tuple[int, ...], name
 
 def check_odd_inputs(method: Method) -> None:
     """Work with odd exemplars and sizes, or refuse them in one sentence."""
-    odd = (texture(2, 2), texture(3, 5), texture(7, 7, 1), texture(61, 4), texture(2, 9, 1))
-    for exemplar in odd:
+    for name, exemplar in odd_exemplars().items():
         for size in (None, (1, 1), (5, 3), (2, 40)):
-            try:
-                result = run(job(method, exemplar, size=size))
-            except InputError as error:
-                check_sentence(str(error), f"the refusal of {exemplar.size} to {size}")
-                continue
             wanted = default_size(exemplar.size, method.dimensions) if size is None else size_for(method, size)
-            promise_output(result, wanted, exemplar.pixels.shape)
+            with case(f"exemplar {name}, size {size}"):
+                promise_output_or_refusal(method, wanted, exemplar=exemplar, size=size)
+
+
+def promise_output_or_refusal(
+    method: Method, wanted: tuple[int, ...], *, exemplar: ImageInput, **changes: Any
+) -> None:
+    """Check the result of a job, or the one sentence that refuses it."""
+    try:
+        result = run(job(method, exemplar, **changes))
+    except InputError as error:
+        check_sentence(str(error), "the refusal")
+        return
+    promise_output(result, wanted, exemplar.pixels.shape)
 
 
 def check_settings(method: Method) -> None:
     """Work with every knob at its ends, or refuse it in one sentence."""
     exemplar = texture(16, 13)
     for params in settings(method):
-        try:
-            result = run(job(method, exemplar, params=params, size=(11, 18)))
-        except InputError as error:
-            check_sentence(str(error), f"the refusal of {params}")
-            continue
-        promise_output(result, size_for(method, (11, 18)), exemplar.pixels.shape)
+        with case(str(params)):
+            promise_output_or_refusal(
+                method, size_for(method, (11, 18)), exemplar=exemplar, params=params, size=(11, 18)
+            )
+
+
+def check_measures(method: Method) -> None:
+    """Say registered measures only, those that it names, in their range, and what the registry computes."""
+    known = measures()
+    missing = [each for each in method.measures if each not in known]
+    promise(not missing, f"measures: names what nobody registers: {', '.join(missing)}.")
+    result = run(job(method, texture(40, 48), size=(44, 60)))
+    unnamed = sorted(set(result.measures) - set(method.measures))
+    promise(not unnamed, f"measures: must name what the results carry, and lacks {', '.join(unnamed)}.")
+    said = Subject.of_result(result)
+    silent = dataclasses.replace(said, given={})
+    for name, value in result.measures.items():
+        measure = known[name]
+        inside = measure.low <= value <= measure.high
+        promise(inside, f"the measure {name} is {value:g}, out of its range {measure.low:g} to {measure.high:g}.")
+        promise(measure.of(said) == value, f"the measure {name} is {value:g}, and asked for {measure.of(said)}.")
+        if measure.function is not None:
+            computed = measure.of(silent)
+            promise(
+                computed is not None and math.isclose(computed, value, rel_tol=1e-9, abs_tol=1e-12),
+                f"the measure {name} is {value:g}; computed from the result it is {computed}.",
+            )
+    promise(set(result.measures) <= set(measure_all(said)), "measures: not all of them are found when asked for.")

@@ -38,7 +38,8 @@ Kind = Literal["int", "float", "bool", "choice", "value"]
 class ParamValue(Protocol):
     """A structured parameter (a threshold table, say): immutable, hashable, and made of JSON.
 
-    The form chooses its editor by this type, never by the name of the parameter.
+    The form chooses its editor by this type, never by the name of the parameter. A class method ``example()``
+    that returns another value than the default lets the checks of ``texlab_core.contract`` try the parameter.
     """
 
     @classmethod

@@ -71,6 +71,11 @@ class ThresholdTable:
             cells.append(_checked(k, name, value))
         return cls(tuple(cells))
 
+    @classmethod
+    def example(cls) -> ThresholdTable:
+        """Return a table that sets the two coarsest levels of a Laplacian pyramid."""
+        return cls(tuple(((k, f"{colour}/laplacian"), 4.0) for k in (1, 2) for colour in ("red", "luminance")))
+
     def to_json(self) -> list[list[int | str | float]]:
         """Return ``[[k, "feature", threshold], ...]``, coarsest level first."""
         return [[k, name, value] for (k, name), value in self.cells]

@@ -58,5 +58,6 @@ register(
         analyze=analyze,
         synthesize=synthesize,
         fails_on=("everything that is not striped",),
+        measures=("stripes",),
     )
 )
