@@ -19,6 +19,7 @@ CASES = {
     "filters": (*ZEBRA, "--scales", "1,2"),
     "representation": (*ZEBRA, "--classes", "3"),
     "gabor": (*ZEBRA, "--wavelength", "28", "--orientation", "12", "--local"),
+    "dependence": (*ZEBRA, "--result", "gallery:stochastic-lava", "--values", "magnitudes"),
     "equalize": ("ramp", "cube-root", "--ties", "together", "--value", "0.3"),
     "pyramid": (*ZEBRA, "--levels", "2", "--orientations", "2"),
     "search": (*ZEBRA, "--threshold", "0.3"),
@@ -72,6 +73,24 @@ def test_numbers_are_those_of_the_core(texlab: Texlab) -> None:
     assert 15 < gabor["local_wavelength"][0] < 40
 
 
+def test_dependence_tells_the_measure(texlab: Texlab) -> None:
+    from texlab_core.measures.registry import find_measure
+    from texlab_core.measures.subject import Subject
+
+    names = "gallery:structured-pebbles", "gallery:stochastic-lava"
+    both = "dependence", names[0], "--result", names[1]
+    found = answer(texlab, *both)
+    expected = find_measure("dependence-difference").of(Subject.of_images(*names))
+    assert found["dependence"] == pytest.approx(expected, abs=1e-12)
+    assert "(the measure)" in texlab("lab", *both).out
+    alone = answer(texlab, "dependence", names[0], "--relation", "orientation", "--orientation", "45")
+    assert alone["pair"] == "level 0, 45°, given the orientation turned by 90°"
+    assert "dependence" not in alone
+    assert len(alone["exemplar"]["joint"]) == 33
+    bits = answer(texlab, "dependence", names[0], "--values", "ranks")["exemplar"]
+    assert bits["information"] == found["exemplar"]["information"]
+
+
 def test_all_ways_of_searching_find_as_many(texlab: Texlab) -> None:
     everywhere = answer(texlab, "search", *CASES["search"])
     assert everywhere["blank_search"]["verified"] == everywhere["structures"]
@@ -118,6 +137,15 @@ def test_a_view_of_the_user_s_own_has_no_truth(texlab: Texlab) -> None:
         (("pyramid", ZEBRA[0], "--levels", "-1"), "levels: must be a whole number from 0, got -1"),
         (("pyramid", ZEBRA[0], "--orientations", "0"), "orientations: must be a whole number from 1 to 18"),
         (("pyramid", ZEBRA[0], "--steps", "--levels", "20"), "levels: must be a whole number from 1 to 8"),
+        (
+            ("dependence", ZEBRA[0], "--orientation", "30"),
+            "orientation: must be 0, 45, 90 or 135 degrees, got '30'",
+        ),
+        (("dependence", ZEBRA[0], "--turn", "0"), "turn: must be 45, 90 or 135 degrees, got '0'"),
+        (("dependence", ZEBRA[0], "--offset", "3"), "offset: must be columns and rows as in 1,0, got '3'"),
+        (("dependence", ZEBRA[0], "--relation", "neighbour", "--offset", "0,0"), "not 0,0"),
+        (("dependence", ZEBRA[0], "--level", "9"), "level: must be a whole number from 0 to 3, got 9"),
+        (("dependence", *ZEBRA, "--level", "3"), "at least 320 pixels high and wide for level 3, got '96 x 96'"),
         (("search", ZEBRA[0], "--pixel", "3"), "pixel: must be column and row as in 10,20, got '3'"),
         (("shape", "noise", "--slant", "85"), "slant: must be at most 80 degrees"),
         (("shape", "noise", "--size", "4000x20"), "size: must be at most 1024x1024"),

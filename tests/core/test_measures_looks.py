@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from texlab_core.measures import discriminability as d
-from texlab_core.measures._bands import band_size, oriented_bands
 from texlab_core.measures.registry import find_measure
 from texlab_core.measures.subject import PreparedCache, Subject
 from texlab_core.transforms.fourier import periodic_component, periodic_spectrum
+from texlab_core.transforms.octave_bands import band_size, oriented_bands
 from texlab_core.work.tasks import finish, go_on
 
 

@@ -12,7 +12,7 @@ from scipy.stats import wasserstein_distance
 from tests.core.test_measures_looks import pebbles
 from texlab_core.engine.steps import Map
 from texlab_core.errors import Cancelled
-from texlab_core.measures import dependence, homogeneity, patches
+from texlab_core.measures import homogeneity, patches
 from texlab_core.measures.distributions import band_distances
 from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.spectra import peak_shifts
@@ -170,16 +170,6 @@ def test_w1_of_bands_is_the_mean_over_the_steerable_pyramid() -> None:
     assert value_of("w1-bands", exemplar, exemplar) == 0
     assert find_measure("w1-bands").of(Subject.of_images(exemplar[:7], image)) is None
     assert find_measure("w1-bands").of(Subject.of_images(np.ones_like(exemplar), image)) is None
-
-
-def test_joint_ranks_know_dependence_and_nothing_else() -> None:
-    rng = np.random.default_rng(0)
-    values = rng.random(64 * 8)
-    own = dependence.joint_ranks(values, values**3)
-    np.testing.assert_allclose(own, np.eye(8) / 8, atol=2 / 512)
-    np.testing.assert_allclose(dependence.joint_ranks(values, -values), np.eye(8)[::-1] / 8, atol=2 / 512)
-    grid = np.mgrid[:80, :80].astype(np.float64)
-    np.testing.assert_allclose(dependence.joint_ranks(grid[0], grid[1]), 1 / 64, atol=1e-12)
 
 
 def test_dependence_is_lost_when_bands_are_made_alone() -> None:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.measures._bands import oriented_bands
 from texlab_core.measures.registry import Measure, register
 from texlab_core.transforms.luma import luma
+from texlab_core.transforms.octave_bands import oriented_bands
 from texlab_core.work.tasks import go_on, row_blocks
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ import numpy as np
 
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
-from texlab_core.measures._bands import oriented_bands
 from texlab_core.measures.registry import Measure, register
 from texlab_core.transforms.luma import luma
+from texlab_core.transforms.octave_bands import oriented_bands
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.steps import FloatImage
+    from texlab_core.stats.dependence import Dependence
     from texlab_core.stats.equalization import Equalization
     from texlab_core.stats.frequency_support import Support
     from texlab_core.stats.local_frequency import LocalFrequency
@@ -202,3 +203,22 @@ def steps_sheet(down: Sequence[Down], up: Sequence[Up]) -> Sheet:
         tiles += [Tile(gray(back.image), ("= image",)), Tile(None), Tile(None)]
         heads.append(f"up, level {level}")
     return contact_sheet(tiles, 5, row_heads=heads, largest=_CELL // 2)
+
+
+def dependence_sheet(shown: Sequence[tuple[str, Plane, Dependence]]) -> Sheet:
+    """Draw, for every (name, plane (H, W), what its bands have to do with each other), both histograms.
+
+    What is given grows to the right, what is looked at upwards. Black: none; the joint histogram by the root of
+    its shares, every column of the conditional one up to its own largest share.
+    """
+    tiles = []
+    for name, plane, found in shown:
+        joint, conditional = found.joint[::-1], found.conditional[::-1]
+        largest = conditional.max(axis=0)
+        columns = conditional / np.where(largest > 0, largest, 1)
+        tiles += [
+            Tile(gray(plane), (name,)),
+            Tile(enlarged(gray(np.sqrt(joint / joint.max())), _CELL), ("joint histogram", found.pair.title())),
+            Tile(enlarged(gray(columns), _CELL), ("conditional histogram", f"{found.information:.3f} bits")),
+        ]
+    return contact_sheet(tiles, 3, largest=_CELL)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from texlab.cli.commands import _lab_filters, _lab_shape
+from texlab.cli.commands import _lab_bands, _lab_filters, _lab_shape
 from texlab.cli.commands._options import add_json_option
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ HELP = "The textbook's laboratory: filters, pyramids, histograms, search keys, s
 ORDER = 18
 READS = ("image", "two", "one")
 WRITES = ".png"
-EXPERIMENTS = {**_lab_filters.EXPERIMENTS, **_lab_shape.EXPERIMENTS}
+EXPERIMENTS = {**_lab_filters.EXPERIMENTS, **_lab_bands.EXPERIMENTS, **_lab_shape.EXPERIMENTS}
 
 
 def configure(parser: Parser) -> None:

@@ -23,12 +23,16 @@ Complex: TypeAlias = NDArray[np.complex64]
 
 
 def oriented_bands(
-    plane: NDArray[np.float32], octaves: int, look: Callable[[], None]
+    plane: NDArray[np.float32],
+    octaves: int,
+    look: Callable[[], None],
+    wanted: Callable[[tuple[int, int]], bool] = lambda _: True,
 ) -> Iterator[tuple[int, int, Complex]]:
     """Split the periodic part of a plane (H, W) into analytic bands.
 
     Octave k is centred at 2^-k / 4 cycles per pixel, a raised cosine in log frequency that ends one octave to each
-    side; orientation o is cos^3 around 45 o degrees, over half of the Fourier plane.
+    side; orientation o is cos^3 around 45 o degrees, over half of the Fourier plane. Only those are computed whose
+    (octave, orientation) is ``wanted``.
 
     Yields
     ------
@@ -44,6 +48,8 @@ def oriented_bands(
         part = spectrum if size == plane.shape else spectrum[np.ix_(rows, columns)]
         filters = _kept_filters if height * width <= _KEPT_PIXELS else _filters
         for orientation, weights in enumerate(filters((height, width), octave)):
+            if not wanted((octave, orientation)):
+                continue
             look()
             band = finish(fourier.ifft2(part * weights), look)
             yield octave, orientation, band
