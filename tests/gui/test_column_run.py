@@ -7,7 +7,7 @@ import pytest
 
 from tests.gui.dock_scenes import column_of
 from texlab.columns.status import details, figures, numbers_of, status_parts
-from texlab.runs.column_run import ColumnRun, Measured, MeasureRun
+from texlab.runs.column_run import BROKEN, SOLID, ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
@@ -69,8 +69,9 @@ def test_a_result_is_measured_quickly_then_wholly():
     assert found.size == (52, 60)
     # Quick numbers, all numbers, then what is wrong.
     assert [each.measures for each in task.reports] == [measure_quick(subject), measure_all(subject)]
-    assert [each.findings for each in task.reports] == [(), ()]
+    assert [(each.findings, each.unexamined) for each in task.reports] == [(None, "")] * 2
     assert found.findings == find_all(subject, result.job.params)
+    assert found.unexamined == ""
     assert task.ways >= task.asked > 40
 
 
@@ -102,6 +103,16 @@ def test_a_measure_that_fails_leaves_the_picture_as_it_is(monkeypatch, caplog):
     assert isinstance(found, Measured)
     assert found.measures == {}
     assert "ZeroDivisionError" in caplog.text
+    assert (found.findings, found.unexamined) == (None, BROKEN)
+
+
+def test_what_cannot_be_examined_is_told_from_what_has_no_fault():
+    result = run(job())
+    solid = measuring(dataclasses.replace(result, volume=np.zeros((4, *result.image.shape), np.float32)))(Task())
+    assert (solid.findings, solid.unexamined) == (None, SOLID)
+    small = measuring(dataclasses.replace(result, image=result.image[:31]))(Task())
+    assert small.findings is None
+    assert small.unexamined == "Nothing is looked for where the result or the exemplar is under 32 pixels."
 
 
 def test_a_column_says_three_numbers_and_the_tool_tip_all():

@@ -169,6 +169,13 @@ def test_without_findings_the_dock_says_why(dock: Any) -> None:
     assert dock.message == "Nothing was found in the result of De Bonet."
     assert feed(dock, scene_of(replace(column(), measures={}), exemplar=noise())) is None
     assert "Nothing was found" not in dock.message
+    assert dock.message == "The result of De Bonet is not examined yet."
+    for unseen in ({"findings": None}, {"draft": True}):
+        assert feed(dock, scene_of(replace(column(), **unseen), exemplar=noise())) is None
+        assert dock.message == "The result of De Bonet is not examined yet."
+    never = replace(column(), findings=None, unexamined="A solid is not examined.")
+    assert feed(dock, scene_of(never, exemplar=noise())) is None
+    assert dock.message == "A solid is not examined."
     assert feed(dock, scene_of(column_of(), exemplar=noise())) is None
     assert "Nothing was found" not in dock.message
 

@@ -59,7 +59,7 @@ def status_parts(scene: ColumnScene) -> list[str]:
             parts.append("from a code, not the exemplar")
         parts += [size_text(made), duration(scene.elapsed_s)]
     if scene.status == "finished":
-        parts += signs(scene.findings)
+        parts += signs(scene.findings or ())
     return parts
 
 
@@ -123,4 +123,4 @@ def details(scene: ColumnScene) -> list[str]:
     if lines and scene.measured_size is not None:
         height, width = scene.measured_size
         lines.insert(0, f"Measured at {width} x {height}:")
-    return [each.sentence for each in scene.findings] + lines
+    return [each.sentence for each in scene.findings or ()] + lines

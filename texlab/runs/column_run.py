@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 MAX_FRAME_BYTES = 96 * 2**20
+SOLID = "A solid is not examined: findings are about pictures. A slice can be exported and examined."
+BROKEN = "The result could not be examined; the log says why."
 
 
 class TaskLike(Protocol):
@@ -169,11 +171,15 @@ class ColumnRun:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Numbers about the picture that is shown, by id, its height and width, and what is wrong with it."""
+    """Numbers about the picture that is shown, by id, its height and width, and what is wrong with it.
+
+    ``findings`` is None while that was not looked into; ``unexamined`` says why it never will be.
+    """
 
     measures: Mapping[str, float]
     size: tuple[int, int]
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Finding, ...] | None = None
+    unexamined: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +194,7 @@ class MeasureRun:
 
     def __call__(self, task: TaskLike) -> Measured:
         """Measure, reporting the quick numbers first; a measure that fails leaves the picture as it is."""
-        from texlab_core.findings.registry import find_all
+        from texlab_core.findings.registry import find_all, unexamined
         from texlab_core.measures.registry import measure_all, measure_quick, measures
         from texlab_core.measures.subject import Subject
 
@@ -202,7 +208,8 @@ class MeasureRun:
             subject = replace(Subject.of_result(self.result, self.cache), look=look)
         size = (self.image.shape[0], self.image.shape[1])
         found: dict[str, float] = {}
-        findings: tuple[Finding, ...] = ()
+        findings: tuple[Finding, ...] | None = None
+        why = ""
         try:
             found = measure_quick(subject)
             if not self.draft:
@@ -210,13 +217,15 @@ class MeasureRun:
                 rest = (each.id for each in measures().values() if not (each.slow or each.live))
                 found |= measure_all(subject, rest)
                 task.progress(Measured(dict(found), size))
-                if self.result is not None and self.result.volume is None:
-                    findings = find_all(subject, self.result.job.params)
+                if self.result is not None:
+                    why = SOLID if self.result.volume is not None else unexamined(subject)
+                    findings = None if why else find_all(subject, self.result.job.params)
         except Cancelled:
             raise
         except Exception:
             log.exception("A picture could not be measured.")
-        return Measured(found, size, findings)
+            why = BROKEN
+        return Measured(found, size, findings, why)
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

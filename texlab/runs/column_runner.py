@@ -192,7 +192,8 @@ class ColumnRunner(QObject):
                 "frames": self.scene.frames if self.drafted else (),
                 "metrics": {},
                 "measures": self.scene.measures if self.drafted else {},
-                "findings": (),
+                "findings": None,
+                "unexamined": "",
                 "draft": small,
                 "elapsed_s": 0.0,
             }
@@ -276,7 +277,7 @@ class ColumnRunner(QObject):
             history = self.scene.history
             if not self.scene.draft and self.scene.result is not None:
                 history = measured(history, self.scene.result.job.key, end.measures)
-            self._show_measures(end, findings=end.findings, history=history)
+            self._show_measures(end, findings=end.findings, unexamined=end.unexamined, history=history)
             return
         self._came(end)
         if not self.worker.behind and self._exemplar is not None:
@@ -294,8 +295,8 @@ class ColumnRunner(QObject):
         status = "waiting" if behind and not self._live else "finished"
         self._live = self._live and behind
         if isinstance(end, Drafted):
-            shown = {"picture": end.picture, "image": end.image, "result": None, "draft": True, "findings": ()}
-            self._show(status=status, message="", **shown)
+            shown = {"picture": end.picture, "image": end.image, "result": None, "draft": True}
+            self._show(status=status, message="", findings=None, unexamined="", **shown)
             return
         # A draft tells as well how long the full size would take: the time grows with the number of samples.
         drawn = math.prod(end.result.job.size)
@@ -313,7 +314,8 @@ class ColumnRunner(QObject):
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,
             "metrics": end.metrics,
-            "findings": (),
+            "findings": None,
+            "unexamined": "",
         }
         if not end.draft:
             changes |= {"frames": end.frames, "measures": {}}

@@ -106,7 +106,9 @@ class ColumnScene:
         Numbers about the picture by id, of the registry of measures; those of a control that is dragged may be
         about the picture before.
     findings
-        What is wrong with the finished picture, once that was looked into.
+        What is wrong with the finished picture; None until that was looked into.
+    unexamined
+        Why that cannot be looked into, one sentence; empty where it is, or will be.
     measured_size
         Height and width of the picture that they are about.
     elapsed_s
@@ -141,7 +143,8 @@ class ColumnScene:
     frames: tuple[Frame, ...] = ()
     metrics: Mapping[str, float] = field(default_factory=dict)
     measures: Mapping[str, float] = field(default_factory=dict)
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Finding, ...] | None = None
+    unexamined: str = ""
     measured_size: tuple[int, int] | None = None
     elapsed_s: float = 0.0
     resumable: bool = False

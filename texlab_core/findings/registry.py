@@ -190,6 +190,15 @@ def find_detector(name: str) -> Detector:
     return _DETECTORS.find(name)
 
 
+def unexamined(subject: Subject) -> str:
+    """Return why a result cannot be examined, one sentence; empty when it can be."""
+    if subject.exemplar is None:
+        return "Nothing is looked for without an exemplar."
+    if min(*subject.image.shape[:2], *subject.exemplar.size) < SMALLEST:
+        return f"Nothing is looked for where the result or the exemplar is under {SMALLEST} pixels."
+    return ""
+
+
 def find_all(subject: Subject, params: Params | None = None, method: str | None = None) -> tuple[Finding, ...]:
     """Return everything that is wrong with a result, the certain things first, then hints, each in their order.
 
@@ -207,7 +216,7 @@ def find_all(subject: Subject, params: Params | None = None, method: str | None 
     Cancelled
         When ``subject.look`` says so.
     """
-    if subject.exemplar is None or min(*subject.image.shape[:2], *subject.exemplar.size) < SMALLEST:
+    if unexamined(subject):
         return ()
     case = Case(subject, subject.method if method is None else method, params)
     found = []

@@ -9,7 +9,16 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
-from texlab.docks.findings.words import Tried, attempt, before_and_after, explanation, heading, marks, try_it
+from texlab.docks.findings.words import (
+    Tried,
+    attempt,
+    before_and_after,
+    explanation,
+    heading,
+    marks,
+    nothing_to_list,
+    try_it,
+)
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.style.pictures import to_picture
@@ -104,20 +113,17 @@ class FindingsDock(FramedDock):
         if column is None or column.result is None or column.status != "finished":
             self.why = ""
             return None
-        if not column.findings:
-            self.why = (
-                f"Nothing was found in the result of {column.title}."
-                if column.measures and not column.draft
-                else ""
-            )
+        found = column.findings
+        if not found:
+            self.why = nothing_to_list(column)
             return None
         image = column.result.image
 
         def compute(should_stop: Callable[[], bool]) -> Found:
             shown = None if exemplar is None else to_picture(exemplar.pixels)
-            return Found(column, column.findings, to_picture(image), shown)
+            return Found(column, found, to_picture(image), shown)
 
-        return Question((self.name, Same(column.findings), Same(image), Same(exemplar)), compute)
+        return Question((self.name, Same(found), Same(image), Same(exemplar)), compute)
 
     def show_answer(self, answer: Found) -> None:
         """List the findings; the one that was chosen stays chosen where it is still there."""

@@ -45,6 +45,13 @@ class Tried:
     before: Mapping[str, float]
 
 
+def nothing_to_list(column: ColumnScene) -> str:
+    """Return why there is no finding of a finished column: nothing is wrong, or nobody has looked."""
+    if column.findings is not None and column.measures and not column.draft:
+        return f"Nothing was found in the result of {column.title}."
+    return column.unexamined or f"The result of {column.title} is not examined yet."
+
+
 def heading(found: Finding) -> str:
     """Return the line of a finding in the list."""
     return f"! {found.title}" if found.certainty == "finding" else f"? {found.title}"
@@ -101,5 +108,6 @@ def before_and_after(tried: Tried | None, columns: tuple[ColumnScene, ...]) -> s
             measure = find_measure(name)
             before, after = measure.text(tried.before[name]), measure.text(column.measures[name])
             lines.append(f"{measure.title} {before} → {after}")
-    gone = "" if any(each.title == tried.title for each in column.findings) else " The finding is gone."
-    return f"{begun} {', '.join(lines[:MOST])}.{gone if column.findings else ''}"
+    left = column.findings
+    gone = left is not None and all(each.title != tried.title for each in left)
+    return f"{begun} {', '.join(lines[:MOST])}.{' The finding is gone.' if gone else ''}"
