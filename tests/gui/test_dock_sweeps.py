@@ -62,6 +62,8 @@ class Bench:
             lambda marks: None,
             lambda dock, how: None,
             print,
+            lambda name, beside: None,
+            lambda name, settings: None,
         )
         self.dock.intention.connect(self.carrier.carry_out)
         self.controller.scene_changed.connect(self.host.show_scene)

@@ -164,6 +164,8 @@ class Bench:
             lambda marks: None,
             lambda dock, how: None,
             lambda intention: None,
+            lambda name, beside: None,
+            lambda name, settings: None,
         )
         self.intended = []
         self.dock.intention.connect(self.intended.append)

@@ -20,6 +20,8 @@ from texlab.state.intentions import (
     FillHoles,
     Intention,
     Open,
+    OpenFailure,
+    OpenTab,
     Pin,
     Point,
     RunSweep,
@@ -70,6 +72,7 @@ class Bench:
         self.chosen: list[int] = []
         self.opened: list[str] = []
         self.taught: list[Any] = []
+        self.asked: list[Any] = []
         self.marks: list[Any] = []
         self.taken: list[tuple[str, str]] = []
         self.carrier = Carrier(
@@ -79,6 +82,8 @@ class Bench:
             self.marks.append,
             self.take,
             self.taught.append,
+            lambda *given: self.asked.append(given),
+            lambda *given: self.asked.append(given),
         )
 
     def take(self, dock: str, how: str) -> None:
@@ -163,6 +168,9 @@ def test_stages_and_pictures_of_tabs(bench: Bench) -> None:
 def test_opening_telling_and_choosing(bench: Bench) -> None:
     bench.do(Open("gallery:oriented-zebra"))
     bench.do(ChooseColumn(2))
+    bench.do(OpenFailure("coral", "de-bonet"))
+    bench.do(OpenTab("histograms", (("log", True),)))
+    assert bench.asked == [("coral", "de-bonet"), ("histograms", {"log": True})]
     bench.do(Tell("Good."))
     bench.do(Tell("Bad.", problem=True))
     assert bench.opened == ["gallery:oriented-zebra"]

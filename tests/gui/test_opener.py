@@ -138,6 +138,14 @@ def test_a_failure_of_the_gallery_brings_its_job(bench: Bench) -> None:
     assert bench.sample.source.name == "gallery:stochastic-gravel"
     assert bench.session.state.size == (256, 256)
     assert bench.background.news[-1].startswith("Thresholds too small: Whole stones")
+    # Another method beside it is added once.
+    methods = [each.method for each in bench.session.state.columns]
+    for beside in ("de-bonet", "tiling", "tiling"):
+        bench.opener.open_failure("coral", beside)
+        bench.background.go_on()
+    assert "de-bonet" in methods
+    assert [each.method for each in bench.session.state.columns] == [*methods, "tiling"]
+    assert bench.session.selected_column.method == "heeger-bergen"
     # The newest wins, also over an image.
     bench.opener.open_failure("rotational-symmetry")
     bench.opener.open("gallery:oriented-zebra")

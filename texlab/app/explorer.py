@@ -42,7 +42,7 @@ from texlab_core.engine.registry import failures, methods
 from texlab_core.sheets.comparison import FIRST_SIGHT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from texlab.columns.column import ColumnView
     from texlab.docks.base import Dock
@@ -114,6 +114,8 @@ class Explorer(QObject):
             self.presenter.show_marks,
             self.tabs.take,
             self.teacher.carry_out,
+            self.opener.open_failure,
+            self._open_tab,
         )
         self._closed = False
         self._memory = QTimer(self)
@@ -250,6 +252,12 @@ class Explorer(QObject):
 
     def _take_tab(self, how: str, _: bool = False) -> None:
         self.tabs.take_front(how)
+
+    def _open_tab(self, name: str, wanted: Mapping[str, Any]) -> None:
+        dock = next((each for each in self.docks if each.name == name), None)
+        self.window.raise_dock(name)
+        if dock is not None and (problems := dock.take_settings(wanted)):
+            self.controller.problem.emit(f"Tab {dock.title}: {'; '.join(problems)}.")
 
     def _connect_controls(self) -> None:
         """Connect what the user turns and drags."""

@@ -127,6 +127,16 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1), added.id
 
 
+def with_method(state: State, method: str) -> State:
+    """Return a state that has a column of a method, with its defaults if it is added."""
+    from texlab_core.engine.registry import find_method
+
+    if any(column.method == method for column in state.columns):
+        return state
+    added = Column(state.next_id, method, find_method(method).params())
+    return dataclasses.replace(state, columns=(*state.columns, added), next_id=state.next_id + 1)
+
+
 def fresh_ids(state: State, first: int) -> State:
     """Return a state whose columns have ids from ``first``: an id is never used again within a session."""
     columns = tuple(dataclasses.replace(column, id=number) for number, column in enumerate(state.columns, first))

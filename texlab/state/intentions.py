@@ -154,6 +154,30 @@ class Open:
 
 
 @dataclass(frozen=True)
+class OpenFailure:
+    """Open an example of the failure gallery.
+
+    Parameters
+    ----------
+    name
+        Of the example.
+    beside
+        A method whose result is wanted beside it; a column of it is added when there is none.
+    """
+
+    name: str
+    beside: str = ""
+
+
+@dataclass(frozen=True)
+class OpenTab:
+    """Bring a tab to the front, with its controls set by name as a user would."""
+
+    tab: str
+    settings: tuple[tuple[str, bool | int | float | str], ...] = ()
+
+
+@dataclass(frozen=True)
 class Tell:
     """Show one sentence in the window: good news, or a problem."""
 
@@ -279,6 +303,8 @@ Intention = (
     | TakePicture
     | ShowMarks
     | Open
+    | OpenFailure
+    | OpenTab
     | Tell
     | AskOnce
     | RunSweep

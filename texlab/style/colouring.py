@@ -253,3 +253,13 @@ COUNT_TABLE = lookup_table(
     ((8, 12, 40), (20, 60, 110), (20, 120, 130), (70, 180, 110), (200, 225, 80), (255, 255, 220))
 )
 GRAY_TABLE = lookup_table(((0, 0, 0), (255, 255, 255)))
+# From the colour of an empty field to the strongest one, by theme: a single hue, whose lightness tells the number.
+HISTOGRAM_TABLES = {
+    "light": lookup_table(((250, 250, 248), (172, 205, 228), (58, 134, 186), (0, 78, 134), (0, 34, 70))),
+    "dark": lookup_table(((26, 28, 31), (32, 66, 92), (38, 120, 168), (98, 188, 236), (226, 244, 253))),
+}
+# Weak enough for numbers on every colour, and for marks over them.
+QUIET_TABLES = {
+    "light": lookup_table(((250, 250, 248), (222, 233, 240), (170, 203, 224))),
+    "dark": lookup_table(((30, 32, 35), (40, 58, 72), (52, 92, 120))),
+}

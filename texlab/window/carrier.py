@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
 from texlab.state.changes import with_cell
 from texlab.state.intentions import (
@@ -19,7 +19,9 @@ from texlab.state.intentions import (
     LeaveLesson,
     NewLesson,
     Open,
+    OpenFailure,
     OpenLesson,
+    OpenTab,
     Pin,
     Point,
     RunSweep,
@@ -36,7 +38,7 @@ from texlab.state.intentions import (
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab.runs.controller import Controller
     from texlab.state.intentions import Intention
@@ -60,6 +62,10 @@ class Carrier:
         Takes what the dock of this name shows away as a picture: ``copy``, ``save`` or ``drag``.
     teach
         Opens, gives, changes and leaves lessons.
+    open_failure
+        Opens an example of the failure gallery by its name, with a column of another method beside it.
+    open_tab
+        Brings the tab of this name to the front and sets its controls by name.
     """
 
     def __init__(
@@ -70,6 +76,8 @@ class Carrier:
         show_marks: Callable[[tuple[Mark, ...]], None],
         take_picture: Callable[[str, str], None],
         teach: Callable[[Intention], None],
+        open_failure: Callable[[str, str], None],
+        open_tab: Callable[[str, Mapping[str, Any]], None],
     ) -> None:
         self._controller = controller
         self._session = controller.session
@@ -78,6 +86,8 @@ class Carrier:
         self._show_marks = show_marks
         self._take_picture = take_picture
         self._teach = teach
+        self._open_failure = open_failure
+        self._open_tab = open_tab
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -112,6 +122,10 @@ class Carrier:
                 self._show_marks(marks)
             case Open(source):
                 self._open_source(source)
+            case OpenFailure(name, beside):
+                self._open_failure(name, beside)
+            case OpenTab(tab, settings):
+                self._open_tab(tab, dict(settings))
             case Tell(sentence, problem):
                 (controller.problem if problem else controller.said).emit(sentence)
             case AskOnce(name, compute, done):

@@ -6,7 +6,16 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from texlab.state.changes import Opened, fitting, fresh_ids, restored, sample_of, with_code, with_crop_of
+from texlab.state.changes import (
+    Opened,
+    fitting,
+    fresh_ids,
+    restored,
+    sample_of,
+    with_code,
+    with_crop_of,
+    with_method,
+)
 from texlab.state.session import Sample, Session
 from texlab.storage.projects import OpenedProject, is_project, open_project
 from texlab.storage.reading import (
@@ -103,8 +112,11 @@ class Opener:
 
         self._controller.once("open", work, done, failed)
 
-    def open_failure(self, name: str) -> None:
-        """Open an example of the failure gallery: its exemplar, method, parameters, size and seed."""
+    def open_failure(self, name: str, beside: str = "") -> None:
+        """Open an example of the failure gallery: its exemplar, method, parameters, size and seed.
+
+        A column of the method ``beside`` is added when there is none.
+        """
         self._newest += 1
         number = self._newest
 
@@ -122,15 +134,17 @@ class Opener:
 
             if number != self._newest:
                 return
-            self._restore(opened, f"failure {name}")
+            self._restore(opened, f"failure {name}", beside)
             example = find_example(name)
             self._controller.said.emit(f"{example.title}: {example.look}")
 
         self._controller.once("open-failure", work, done)
 
-    def _restore(self, opened: Opened, text: str) -> None:
+    def _restore(self, opened: Opened, text: str, beside: str = "") -> None:
         first = self._session.state.sample is None
         state, column_id = restored(self._session.state, opened)
+        if beside:
+            state = with_method(state, beside)
         self._session.apply(state, text)
         self._session.select(column_id)
         self._forget_start(first)

@@ -116,14 +116,18 @@ class Pair:
 
     def title(self) -> str:
         """Return what is looked at and what is given, in words."""
+        return ", given ".join(self.names())
+
+    def names(self) -> tuple[str, str]:
+        """Return what is looked at, and what is given."""
         which = "all orientations" if self.orientation is None else f"{45 * self.orientation}°"
         here = f"level {self.level}, {which}"
         if self.relation == "parent":
-            return f"{here}, given the parent at level {self.level + 1}"
+            return here, f"the parent at level {self.level + 1}"
         if self.relation == "orientation":
-            return f"{here}, given the orientation turned by {45 * self.turn}°"
+            return here, f"the orientation turned by {45 * self.turn}°"
         down, right = self.offset
-        return f"{here}, given the neighbour {right} to the right and {down} down"
+        return here, f"the neighbour {right} to the right and {down} down"
 
 
 @dataclass(frozen=True, eq=False)

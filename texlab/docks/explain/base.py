@@ -27,9 +27,11 @@ class ExplanationView(QWidget):
     """Shows explanations of one kind.
 
     ``marks_changed(marks)``: the places of the exemplar to outline, a tuple of ``Mark``.
+    ``intention(value)``: what the user wants to be done, a value of :mod:`texlab.state.intentions`.
     """
 
     marks_changed = Signal(object)
+    intention = Signal(object)
 
     def show_explanation(self, explained: Any) -> None:
         """Show what ``Explainer.explain`` returned, and tell which places to outline."""

@@ -108,6 +108,7 @@ class ExplainDock(FramedDock):
             view = self._views[id(explainer)] = explainer.make_view()
             view.set_theme(self.theme)
             view.marks_changed.connect(self._mark)
+            view.intention.connect(self.intention)
             self._pages.addWidget(view)
         self._pages.setCurrentWidget(view)
         self.setFocusProxy(view)

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from texlab.docks.explain.band_bars import BandBars, Bar
 from texlab.docks.explain.base import Explainer, ExplanationView, never
 from texlab.docks.recent import Recent, Same
+from texlab.state.intentions import OpenTab
 from texlab.style.colouring import diverging
 from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
@@ -21,7 +22,9 @@ from texlab_core.errors import Cancelled
 from texlab_core.methods.heeger_bergen.contributions import contributions
 from texlab_core.methods.heeger_bergen.method import Convergence, HeegerBergenParams
 from texlab_core.stats.bands import names
+from texlab_core.stats.dependence import MOST_LEVEL
 from texlab_core.transforms.luma import luma
+from texlab_core.transforms.octave_bands import ORIENTATIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,12 +81,18 @@ class ExplainedPixel:
         Luma of the pixel.
     built
         What built the whole picture.
+    keys
+        The place of every subband in the pyramid.
+    orientations
+        Oriented subbands per level.
     """
 
     pixel: tuple[int, int]
     bars: tuple[Bar, ...]
     value: float
     built: Built
+    keys: tuple[BandKey, ...]
+    orientations: int
 
 
 _built = Recent(CACHE_BYTES, lambda built: built.nbytes)
@@ -130,7 +139,7 @@ def explain_pixel(
         make_bar(key, float(each), float(spread), params.orientations)
         for key, each, spread in zip(keys, values, built.found.spreads, strict=True)
     )
-    return ExplainedPixel((row, column), bars, value, built)
+    return ExplainedPixel((row, column), bars, value, built, keys, params.orientations)
 
 
 def make_bar(key: BandKey, value: float, spread: float, orientations: int) -> Bar:
@@ -150,6 +159,18 @@ def summary(explained: ExplainedPixel) -> str:
     return (
         f"Luma {explained.value:.3f} = {mean:.3f}, the mean of the picture, {explained.value - mean:+.3f} from "
         f"the subbands. Most of it: {strongest}. Each of them was made without asking the others."
+    )
+
+
+def dependence_settings(explained: ExplainedPixel, index: int) -> tuple[tuple[str, str | int], ...]:
+    """Return how the tab Dependence is to be set for a subband: its parent, level, and nearest orientation."""
+    key = explained.keys[index]
+    turn = round(key.orientation * ORIENTATIONS / explained.orientations) % ORIENTATIONS
+    level = 0 if key.kind == "highpass" else min(key.level, MOST_LEVEL)
+    return (
+        ("relation", "parent"),
+        ("level", level),
+        ("orientation", turn if key.kind == "oriented" else -1),
     )
 
 
@@ -193,7 +214,19 @@ class HeegerBergenView(ExplanationView):
         layout.setContentsMargins(6, 0, 6, 4)
         layout.setSpacing(2)
         layout.addLayout(panes, 1)
-        layout.addWidget(self.words)
+        self.dependence = QPushButton("See what the others knew")
+        self.dependence.setObjectName("explain-dependence")
+        self.dependence.setAccessibleName("Open the tab Dependence for the chosen subband")
+        set_tip(
+            self.dependence,
+            "The subbands were made without asking each other: the tab Dependence shows what the chosen one has "
+            "to do with its parent in the exemplar, and what is left of it here",
+        )
+        self.dependence.clicked.connect(lambda _: self._open_dependence())
+        below = QHBoxLayout()
+        below.addWidget(self.words, 1)
+        below.addWidget(self.dependence)
+        layout.addLayout(below)
         self.setFocusProxy(self.bars)
 
     def set_theme(self, theme: Theme) -> None:
@@ -211,6 +244,11 @@ class HeegerBergenView(ExplanationView):
         self._show_band()
         self._point(-1)
         self.marks_changed.emit(())
+
+    def _open_dependence(self) -> None:
+        explained, index = self._explained, max(self.bars.selected, 0)
+        if explained is not None:
+            self.intention.emit(OpenTab("dependence", dependence_settings(explained, index)))
 
     def _show_band(self) -> None:
         explained, index = self._explained, self.bars.selected

@@ -1,0 +1,1 @@
+"""What bands have to do with each other, exemplar beside results, linked to pixels."""
