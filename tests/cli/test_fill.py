@@ -108,7 +108,16 @@ def test_a_recipe_makes_the_same_fill_again(texlab: Texlab, wall: str, mask: str
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((), "There is nothing to fill: give --mask, --transparent or a larger --size."),
+        ((), "There is nothing to fill: give --mask, --transparent, --margins or a larger --size."),
+        (("--mask", "mask.png", "--soft", "--feather", "2"), "Give either --soft or --feather."),
+        (("--size", "40x40", "--margins", "4"), "Give either --size or --margins."),
+        (("--margins", "1,2,3"), "margins: must be a number of pixels, or four for left, top, right and bottom"),
+        (("--margins", "0"), "margins: must be at least one margin above 0, got '0'."),
+        (("--margins", "4", "--soft"), "--soft needs --mask or --transparent."),
+        (("--mask", "mask.png", "--feather", "x"), "feather: must be a whole number, got 'x'."),
+        (("--mask", "mask.png", "--feather", "99"), "feather: must be from 0 to 30 pixels for this mask, got 99."),
+        (("--mask", "mask.png", "--soft", "--threshold", "0.2"), "Give either --soft or --threshold."),
+        (("--mask", "mask.png", "--exemplar-scale", "0.5"), "--exemplar-scale needs --exemplar."),
         (("--mask", "mask.png", "--transparent"), "Give either --mask or --transparent."),
         (("--mask", "small.png"), "mask: must have the size of the exemplar, 30 x 28 pixels, got 5 x 4."),
         (("--mask", "black.png"), "mask: marks no pixel, so that there is nothing to fill."),
@@ -129,6 +138,78 @@ def test_what_cannot_work_is_said_in_one_sentence(
     assert sentence in shown.err
     assert shown.err.count("\n") == 1
     assert not Path("out.png").exists()
+
+
+def test_margins_and_another_image_of_which_a_part_is_used(texlab: Texlab, wall: str) -> None:
+    other = save("other.png", texture(40, 40, 3, seed=5))
+    shown = texlab(
+        *("fill", wall, "--margins", "3,0,5,2", "--exemplar", other, "--exemplar-crop", "20x22+4+6"),
+        *("--out", "out.png", "--set", "window=5"),
+    )
+    assert (shown.code, shown.err) == (0, "")
+    made = pixels("out.png")
+    assert made.shape == (30, 38, 3)
+    np.testing.assert_array_equal(made[:28, 3:33], pixels(wall))
+    allowed = {tuple(pixel) for pixel in pixels(other)[6:28, 4:24].reshape(-1, 3)}
+    assert {tuple(pixel) for pixel in made[28:].reshape(-1, 3)} <= allowed
+    assert texlab("redo", "out.png", "--out", "again.png").code == 0
+    np.testing.assert_array_equal(pixels("again.png"), made)
+
+
+@pytest.mark.parametrize("how", [("--soft",), ("--feather", "2")])
+def test_soft_edges_at_sixteen_bits(texlab: Texlab, how: tuple[str, ...]) -> None:
+    random = np.random.default_rng(1)
+    deep = texture(28, 30, 3).astype(np.float32) / 255 + random.random((28, 30, 3), np.float32) / 300
+    write_image(Path("deep.png"), deep.clip(0, 1), bits=16)
+    marks = np.zeros((28, 30, 1), np.float32)
+    marks[HOLE] = 1
+    if how == ("--soft",):
+        marks[9, 12:20] = 0.4
+    write_image(Path("mask.png"), marks)
+    shown = texlab("fill", "deep.png", "--mask", "mask.png", *how, "--out", "out.png", "--set", "window=5")
+    assert (shown.code, shown.err) == (0, "")
+    made, was = pixels("out.png"), pixels("deep.png")
+    assert made.dtype == np.uint16
+    outside = np.ones((28, 30), bool)
+    outside[7:21, 9:23] = False
+    np.testing.assert_array_equal(made[outside], was[outside])
+    assert (made[9, 12:20] != was[9, 12:20]).any()
+    assert "pixels of the edge mix the fill with what was there." in shown.out
+    # A mask is an image of its own: the recipe has it, and takes it from outside too.
+    assert texlab("redo", "out.png", "--out", "again.png").code == 0
+    np.testing.assert_array_equal(pixels("again.png"), made)
+
+
+def test_how_transparent_a_pixel_is_says_how_much_is_filled(texlab: Texlab, wall: str) -> None:
+    from PIL import Image
+
+    alpha = np.full((28, 30, 1), 255, np.uint8)
+    alpha[HOLE] = 0
+    alpha[18, 12:20] = 204
+    Image.fromarray(np.concatenate([pixels(wall), alpha], axis=2)).save("holes.png")
+    shown = texlab(
+        *("fill", "holes.png", "--transparent", "--soft", "--alpha", "ignore"),
+        *("--out", "out.png", "--set", "window=5"),
+    )
+    assert (shown.code, shown.err) == (0, "")
+    change = np.abs(pixels("out.png")[18, 12:20].astype(int) - pixels(wall)[18, 12:20])
+    # A fifth of the fill, and four fifths of what was there.
+    assert change.max() <= 52
+    assert change.any()
+
+
+def test_a_large_picture_is_filled_around_its_hole_and_says_so(texlab: Texlab) -> None:
+    large = save("large.png", np.tile(texture(60, 60, 1), (9, 10, 1)))
+    marks = np.zeros((540, 600, 1), np.uint8)
+    marks[300:304, 200:206] = 255
+    save("mask.png", marks)
+    shown = texlab("fill", large, "--mask", "mask.png", "--out", "out.jpg", "--set", "window=5")
+    assert (shown.code, shown.err) == (0, "")
+    assert "24 pixels were filled, each from one of about" in shown.out
+    assert (
+        "Only what is within 128 pixels of a hole was looked at; reach=0 searches the whole picture." in shown.out
+    )
+    assert "A JPEG is compressed as a whole" in shown.out
 
 
 def test_the_help_lists_the_knobs(texlab: Texlab) -> None:

@@ -147,6 +147,11 @@ class RecipeInput:
 
             if (mask := as_mask(given)).sha256 == self.sha256:
                 return mask
+        if self.role == "blend":
+            from texlab_core.images.masks import as_blend
+
+            if (blend := as_blend(given)).sha256 == self.sha256:
+                return blend
         if not force:
             raise RecipeError(f"{first.name} is not the image of the recipe, which is {self.described}.")
         return first

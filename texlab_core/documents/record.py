@@ -40,6 +40,9 @@ __all__ = [
 ]
 
 
+_DEPTHS: tuple[Bits, ...] = (8, 16, "float")
+
+
 def save_result(
     result: Result,
     path: str | os.PathLike[str],
@@ -146,10 +149,12 @@ def encode_result(
 def result_bits(result: Result, path: str | os.PathLike[str]) -> Bits:
     """Return the depth at which a result is saved under a name unless something else is asked for.
 
-    That is the exemplar's own; 8 bits where a result has none. Raises ``ImageError`` for a name without a format.
+    That is the exemplar's own, or that of an image that was filled where it is deeper; 8 bits where a result has
+    none. Raises ``ImageError`` for a name without a format.
     """
-    exemplar = result.job.inputs.get("exemplar")
-    depth: Bits = exemplar.depth if isinstance(exemplar, ImageInput) else 8
+    given = (result.job.inputs.get(role) for role in ("exemplar", "start"))
+    depths: list[Bits] = [each.depth for each in given if isinstance(each, ImageInput)]
+    depth: Bits = max(depths, key=_DEPTHS.index, default=8)
     return default_volume_bits(path, depth) if len(result.job.size) == 3 else default_bits(path, depth)
 
 
@@ -172,21 +177,23 @@ def carried_alpha(result: Result) -> FloatImage | None:
     Returns
     -------
     FloatImage or None
-        (H, W, 1) float32 in [0, 1], 1 where a pixel has no source; None when the exemplar's alpha was not kept or
-        the method has no source map.
+        (H, W, 1) float32 in [0, 1]; where a pixel has no source that of an image of the same size that was filled,
+        else 1. None when no alpha was kept or the method has no source map.
     """
-    exemplar = result.job.inputs.get("exemplar")
-    if not isinstance(exemplar, ImageInput) or exemplar.alpha is None:
-        return None
+    exemplar, start = (result.job.inputs.get(role) for role in ("exemplar", "start"))
+    own = exemplar.alpha if isinstance(exemplar, ImageInput) else None
+    given = start.alpha if isinstance(start, ImageInput) else None
     found = result.maps.get("source")
-    if found is None or found.kind != "source":
+    if (own is None and given is None) or found is None or found.kind != "source":
         return None
     source = found.data
-    height, width = exemplar.size
-    rows, columns = source[..., 0], source[..., 1]
-    known = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
     carried = np.ones((*source.shape[:2], 1), np.float32)
-    carried[known] = exemplar.alpha[rows[known], columns[known]]
+    if given is not None and given.shape == carried.shape:
+        carried[...] = given
+    rows, columns = source[..., 0], source[..., 1]
+    height, width = exemplar.size if isinstance(exemplar, ImageInput) else (0, 0)
+    known = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+    carried[known] = 1 if own is None else own[rows[known], columns[known]]
     return carried
 
 

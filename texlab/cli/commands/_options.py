@@ -44,14 +44,14 @@ def parse_result_size(text: str, dimensions: int) -> tuple[int, ...]:
     return depth, height, width
 
 
-def parse_crop(text: str) -> Crop:
+def parse_crop(text: str, name: str = "crop") -> Crop:
     """Return the rectangle from ``WxH+X+Y``; raises ``ParamError``."""
     found = re.fullmatch(r"([0-9]{1,9}[xX×][0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())
     if found is None:
-        raise ParamError("crop", "width, height, left and top as in 256x192+10+20", text)
+        raise ParamError(name, "width, height, left and top as in 256x192+10+20", text)
     from texlab_core.engine.inputs import Crop
 
-    height, width = parse_size(found[1], "crop")
+    height, width = parse_size(found[1], name)
     return Crop(top=int(found[3]), left=int(found[2]), height=height, width=width)
 
 

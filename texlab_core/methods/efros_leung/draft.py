@@ -10,14 +10,15 @@ import numpy as np
 from texlab_core.engine.inputs import exemplar_of
 from texlab_core.engine.streams import Streams
 from texlab_core.methods.efros_leung.candidates import make_pool, to_bytes
-from texlab_core.methods.efros_leung.fill import allowed_centres, begin, check_inputs, make_growth
+from texlab_core.methods.efros_leung.checks import check_inputs
+from texlab_core.methods.efros_leung.fill import allowed_centres, begin, make_growth
 from texlab_core.methods.efros_leung.windows import offsets
 from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
     from texlab_core.engine.inputs import Inputs
     from texlab_core.engine.steps import FloatImage
-    from texlab_core.methods.efros_leung.fill import Anchor
+    from texlab_core.methods.efros_leung.fill import Place
     from texlab_core.methods.efros_leung.windows import Matching
 
 GUESSES = 6
@@ -32,7 +33,7 @@ def draft(
     seed: int,
     *,
     seed_patch: int = 3,
-    anchor: Anchor = "center",
+    anchor: Place = "center",
     seconds: float = 0.08,
 ) -> FloatImage:
     """Return a picture that shows roughly what the settings do: no exact result, and none to keep.
@@ -54,9 +55,9 @@ def draft(
         As for the exact run.
     """
     deadline = time.perf_counter() + seconds
-    check_inputs(inputs, matching, size)
+    check_inputs(inputs, matching, size, anchor)
     exemplar = exemplar_of(inputs)
-    if not {"start", "mask", "state"} & inputs.keys():
+    if not {"start", "mask", "blend", "state"} & inputs.keys():
         size = _smaller(size, matching, exemplar.channels)
     pool = make_pool(to_bytes(exemplar.pixels), allowed_centres(inputs, matching), matching)
     streams = Streams(seed)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _PIXELS_AT_ONCE = 2**17
 _BINS = 64
+_NO_LEVELS = np.empty(0, np.float32)
 UNITS = {"ssd": "gray levels²", "flat-ssd": "gray levels²", "sad": "gray levels", "ncc": ""}
 
 
@@ -50,7 +51,6 @@ def report(
     image = np.empty((height, width, exemplar.channels), np.float32)
     source = np.empty((height, width, 2), np.int32)
     order = np.empty((height, width), np.float32)
-    tally = _Tally(int(canvas.order.max(initial=0)))
     for part in row_blocks((height, width), _PIXELS_AT_ONCE):
         places = canvas.source[part] - 1
         source[part, :, 0], source[part, :, 1] = places // exemplar.size[1], places % exemplar.size[1]
@@ -59,12 +59,9 @@ def report(
         if given is not None:
             image[part] = np.where(places[..., None] < 0, given[part], image[part])
         order[part] = canvas.order[part]
-        tally.add(canvas.order[part], canvas.d_min[part])
         yield step
-    # What was given has no source, and is no work of the method.
-    labels, sizes = yield from through(copied_regions_steps(source), step)
-    continuity = yield from through(continuous_share_steps(source), step)
     unit = UNITS[grown.matching.criterion]
+    labels, measures, curves = yield from measuring(source, canvas.order, canvas.d_min, unit, step, levels)
     return Output(
         image=image,
         maps={
@@ -74,11 +71,49 @@ def report(
             "distance": Map(canvas.d_min, "scalar", "Smallest distance d_min", unit),
             "copied": Map(labels, "label", "Areas copied in one piece"),
         },
-        curves=_curves(tally, levels, unit),
-        measures=_measures(tally, levels) | _copying(source, continuity, sizes),
+        curves=curves,
+        measures=measures,
         notes=_notes(grown),
         details=grown,
     )
+
+
+def measuring(
+    source: NDArray[np.int32],
+    order: NDArray[Any],
+    d_min: NDArray[np.float32],
+    unit: str,
+    step: Step,
+    levels: NDArray[np.float32] = _NO_LEVELS,
+) -> Generator[Step, None, tuple[NDArray[np.int32], dict[str, float], dict[str, Curve]]]:
+    """Measure a finished growth.
+
+    Parameters
+    ----------
+    source
+        (H, W, 2) int32; a negative row is a pixel that was given: it has no source, and is no work of the method.
+    order, d_min
+        (H, W), 0 or the number of the filled pixel; (H, W) float32.
+    unit
+        Of ``d_min``.
+    step
+        Yielded between portions.
+    levels
+        As for :func:`report`.
+
+    Returns
+    -------
+    labels, measures, curves
+        (H, W) int32 areas copied in one piece; numbers; curves.
+    """
+    tally = _Tally(int(order.max(initial=0)))
+    for part in row_blocks(order.shape, _PIXELS_AT_ONCE):
+        tally.add(order[part], d_min[part])
+        yield step
+    labels, sizes = yield from through(copied_regions_steps(source), step)
+    continuity = yield from through(continuous_share_steps(source), step)
+    measures = _measures(tally, levels) | _copying(source, continuity, sizes)
+    return labels, measures, _curves(tally, levels, unit)
 
 
 class _Tally:
@@ -91,7 +126,7 @@ class _Tally:
         self.sums = np.zeros(self.bins)
         self.exact = 0
 
-    def add(self, order: NDArray[np.int32], distances: NDArray[np.float32]) -> None:
+    def add(self, order: NDArray[Any], distances: NDArray[np.float32]) -> None:
         filled = order > 0
         if not filled.any():
             return

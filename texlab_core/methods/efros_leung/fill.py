@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from texlab_core.engine.inputs import ArraysInput, ImageInput, Inputs, exemplar_of
-from texlab_core.errors import InputError, ParamError
-from texlab_core.methods.efros_leung.candidates import may_be_copied, to_bytes, whole_windows
+from texlab_core.errors import InputError
+from texlab_core.methods.efros_leung.candidates import may_be_copied, to_bytes
 from texlab_core.methods.efros_leung.growth import Growth, empty_canvas
 from texlab_core.work.tasks import row_blocks
 
@@ -25,22 +25,11 @@ if TYPE_CHECKING:
     from texlab_core.methods.efros_leung.windows import Matching
 
 Anchor = Literal[
-    "center", "top-left", "top", "top-right", "left", "right", "bottom-left", "bottom", "bottom-right"
+    "center", "top-left", "top", "top-right", "left", "right", "bottom-left", "bottom", "bottom-right", "at"
 ]
+Place = Anchor | tuple[int, int]
+"""Where an image lies in a larger output: at one of its borders, or with its top left pixel at (row, column)."""
 _PIXELS_AT_ONCE = 2**16
-_STATE = (
-    "values",
-    "status",
-    "source",
-    "order",
-    "matches",
-    "d_min",
-    "given",
-    "queue",
-    "numbers",
-    "levels",
-    "settings",
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,136 +51,27 @@ class Beginning:
     progress: Mapping[str, Any]
 
 
-def check_inputs(inputs: Inputs, matching: Matching, size: tuple[int, int]) -> None:
-    """Refuse what cannot work.
-
-    Raises
-    ------
-    InputError
-        For a mask or region of the wrong size, an empty or all-covering mask, an output smaller than the image to
-        start from, a window that fits nowhere, or a state of something else.
-    """
-    exemplar = exemplar_of(inputs)
-    height, width = exemplar.size
-    _check_window(exemplar, matching)
-    region = _region(inputs)
-    if region is not None and not region.any():
-        raise InputError("region: marks no pixel that may be copied.")
-    _check_start(inputs, size)
-    allowed = may_be_copied((height, width), matching, region, hole_of(inputs))
-    if whole_windows(allowed, matching) == 0:
-        names = " and ".join(name for name in ("mask", "region") if name in inputs)
-        raise InputError(
-            f"{names}: no whole window of {matching.window} x {matching.window} pixels is left to copy from; "
-            "use a smaller window or leave more of the exemplar."
-        )
-    state = inputs.get("state")
-    if isinstance(state, ArraysInput):
-        _check_state(state, exemplar, size)
-
-
-def _check_window(exemplar: ImageInput, matching: Matching) -> None:
-    height, width = exemplar.size
-    # A causal window needs only the rows above.
-    largest = min(2 * height - 1 if matching.causal else height, width)
-    largest -= 1 - largest % 2
-    if matching.border == "periodic" or matching.window <= largest:
-        return
-    if largest < 3:
-        raise InputError(
-            f"The exemplar needs at least 3 x 3 pixels for windows inside of it, got {width} x {height}."
-        )
-    raise ParamError(
-        "window", f"at most {largest} inside an exemplar of {width} x {height} pixels", matching.window
-    )
-
-
-def _check_start(inputs: Inputs, size: tuple[int, int]) -> None:
-    start, mask = _image(inputs, "start"), _image(inputs, "mask")
-    exemplar = exemplar_of(inputs)
-    if start is not None and start.channels == 3 and exemplar.channels == 1:
-        raise InputError(
-            f"The start image {start.name} is in colour, and the exemplar {exemplar.name} is gray; choose a gray "
-            "start image or an exemplar in colour."
-        )
-    if start is None and mask is None:
-        return
-    image, name = (exemplar, "exemplar") if start is None else (start, "start image")
-    height, width = image.size
-    if size[0] < height or size[1] < width:
-        raise _too_small(name, image.size, size)
-    if mask is None:
-        if size == image.size:
-            raise InputError("There is nothing to fill: give a mask, or a size larger than the start image.")
-        return
-    if mask.size != image.size:
-        raise InputError(
-            f"mask: must have the size of the {name}, {width} x {height} pixels, "
-            f"got {mask.size[1]} x {mask.size[0]}."
-        )
-    marked = _marked(mask)
-    if marked.all():
-        raise InputError("mask: covers the whole image, so that nothing is left to grow from.")
-    if not marked.any() and size == image.size:
-        raise InputError("mask: marks no pixel, so that there is nothing to fill.")
-
-
-def _check_state(state: ArraysInput, exemplar: ImageInput, size: tuple[int, int]) -> None:
-    arrays = state.arrays
-    if any(name not in arrays for name in (*_STATE, "exemplar")) or arrays["status"].ndim != 2:
-        raise InputError(f"state: {state.name} is not the state of a growing image.")
-    if arrays["exemplar"].tobytes() != bytes.fromhex(exemplar.sha256):
-        raise InputError(f"state: {state.name} belongs to another exemplar.")
-    height, width = arrays["status"].shape
-    shapes_fit = (
-        arrays["values"].shape == (exemplar.channels, height, width)
-        and all(arrays[name].shape == (height, width) for name in ("source", "order", "matches", "d_min"))
-        and arrays["given"].shape in ((height, width, exemplar.channels), (0,))
-        and arrays["numbers"].shape == (6,)
-        and arrays["levels"].shape == (2,)
-        and arrays["queue"].ndim == 1
-    )
-    if not shapes_fit or not (arrays["status"] == 1).any():
-        raise InputError(f"state: {state.name} is damaged.")
-    if size[0] < height or size[1] < width:
-        raise _too_small("state", (height, width), size)
-    if not _state_is_sound(arrays, exemplar.size):
-        raise InputError(f"state: {state.name} is damaged.")
-
-
-def _too_small(name: str, least: tuple[int, int], size: tuple[int, int]) -> InputError:
-    return InputError(
-        f"size: must be at least that of the {name}, {least[1]} x {least[0]} pixels, got {size[1]} x {size[0]}."
-    )
-
-
-def _state_is_sound(arrays: Mapping[str, NDArray[Any]], exemplar: tuple[int, int]) -> bool:
-    """Return whether all numbers are in range: kernels do not check what they index."""
-    source, queue, numbers = arrays["source"], arrays["queue"], arrays["numbers"]
-    height, width = source.shape
-    whole = all(np.issubdtype(each.dtype, np.integer) for each in (source, queue, numbers, arrays["order"]))
-    return bool(
-        whole
-        and source.min() >= 0
-        and source.max() <= exemplar[0] * exemplar[1]
-        and (queue.size == 0 or (queue.min() >= 0 and queue.max() < height * width))
-        and 0 <= numbers[0] <= queue.size
-        and numbers.min() >= 0
-        and numbers[3] <= height
-        and not np.isnan(arrays["levels"]).any()
-    )
-
-
 def hole_of(inputs: Inputs) -> NDArray[np.bool_] | None:
     """Return where the exemplar itself is to be filled, (H, W) bool: no window that touches it is a candidate."""
-    mask, start = _image(inputs, "mask"), _image(inputs, "start")
+    mask, start = hole_image(inputs), image_of(inputs, "start")
     if mask is None or (start is not None and start.sha256 != exemplar_of(inputs).sha256):
         return None
-    return _marked(mask)
+    return marked_in(mask)
 
 
-def _region(inputs: Inputs) -> NDArray[np.bool_] | None:
-    region = _image(inputs, "region")
+def hole_image(inputs: Inputs) -> ImageInput | None:
+    """Return what says where the start image is filled: its mask, or how much of the fill covers it."""
+    return image_of(inputs, "mask") or image_of(inputs, "blend")
+
+
+def fills(inputs: Inputs) -> bool:
+    """Return whether an image is filled or extended, and not grown from a seed or a state."""
+    return "state" not in inputs and any(name in inputs for name in ("start", "mask", "blend"))
+
+
+def region_of(inputs: Inputs) -> NDArray[np.bool_] | None:
+    """Return what may be copied of the exemplar, (H, W) bool; raises ``InputError`` for another size."""
+    region = image_of(inputs, "region")
     if region is None:
         return None
     height, width = exemplar_of(inputs).size
@@ -200,16 +80,16 @@ def _region(inputs: Inputs) -> NDArray[np.bool_] | None:
             f"region: must have the size of the exemplar, {width} x {height} pixels, "
             f"got {region.size[1]} x {region.size[0]}."
         )
-    return _marked(region)
+    return marked_in(region)
 
 
 def allowed_centres(inputs: Inputs, matching: Matching) -> NDArray[np.bool_]:
     """Return where in the exemplar the centre of a candidate may be, (H, W) bool."""
-    return may_be_copied(exemplar_of(inputs).size, matching, _region(inputs), hole_of(inputs))
+    return may_be_copied(exemplar_of(inputs).size, matching, region_of(inputs), hole_of(inputs))
 
 
 def begin(
-    inputs: Inputs, matching: Matching, size: tuple[int, int], streams: Streams, *, seed_patch: int, anchor: Anchor
+    inputs: Inputs, matching: Matching, size: tuple[int, int], streams: Streams, *, seed_patch: int, anchor: Place
 ) -> Generator[None, None, Beginning]:
     """Lay out what is known at the start; yields between portions of large images.
 
@@ -220,7 +100,7 @@ def begin(
     state = inputs.get("state")
     if isinstance(state, ArraysInput):
         return (yield from _from_state(state, size, anchor))
-    if "start" in inputs or "mask" in inputs:
+    if fills(inputs):
         return (yield from _from_image(inputs, size, anchor))
     return _from_seed(inputs, matching, size, streams("seed patch"), seed_patch)
 
@@ -230,6 +110,8 @@ def settings_digest(inputs: Inputs, matching: Matching, size: tuple[int, int], s
     hashes = [
         each.sha256 if (each := inputs.get(name)) is not None else "" for name in ("exemplar", "mask", "region")
     ]
+    # Nothing more where there is none: states that were kept before go on as they would have.
+    hashes += [each.sha256] if (each := inputs.get("blend")) is not None else []
     hole = "hole" if hole_of(inputs) is not None else ""
     text = repr((matching, size, streams.seed, hashes, hole))
     return hashlib.blake2b(text.encode(), digest_size=16).digest()
@@ -264,11 +146,11 @@ def full_state(growth: Growth, exemplar: ImageInput, given: FloatImage | None) -
     }
 
 
-def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Generator[None, None, Beginning]:
+def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Place) -> Generator[None, None, Beginning]:
     arrays = state.arrays
     channels, height, width = arrays["values"].shape
     canvas = empty_canvas(channels, size)
-    place = _placed((height, width), size, anchor)
+    place = placed((height, width), size, anchor)
     given = np.zeros((*size, channels), np.float32) if arrays["given"].size else None
     for rows in row_blocks((height, width), _PIXELS_AT_ONCE):
         for name, target in canvas._asdict().items():
@@ -301,13 +183,13 @@ def _from_state(state: ArraysInput, size: tuple[int, int], anchor: Anchor) -> Ge
     return Beginning(canvas, given, progress)
 
 
-def _from_image(inputs: Inputs, size: tuple[int, int], anchor: Anchor) -> Generator[None, None, Beginning]:
+def _from_image(inputs: Inputs, size: tuple[int, int], anchor: Place) -> Generator[None, None, Beginning]:
     exemplar = exemplar_of(inputs)
-    start, mask = _image(inputs, "start"), _image(inputs, "mask")
+    start, mask = image_of(inputs, "start"), hole_image(inputs)
     image = exemplar if start is None else start
     height, width = image.size
     canvas = empty_canvas(exemplar.channels, size)
-    place = _placed(image.size, size, anchor)
+    place = placed(image.size, size, anchor)
     # Every given pixel of the exemplar is its own source; others are kept as they are.
     own = image.sha256 == exemplar.sha256
     given = None if own else np.zeros((*size, exemplar.channels), np.float32)
@@ -332,7 +214,7 @@ def _from_seed(
 ) -> Beginning:
     exemplar = exemplar_of(inputs)
     height, width = exemplar.size
-    region = _region(inputs)
+    region = region_of(inputs)
     allowed = np.ones((height, width), bool) if region is None else region
     side = min(seed_patch, height, width, *size)
     while not (corners := _patch_corners(allowed, side)).any():
@@ -342,7 +224,7 @@ def _from_seed(
     source_rows, source_columns = np.mgrid[
         rows[chosen] : rows[chosen] + side, columns[chosen] : columns[chosen] + side
     ]
-    place = _placed((side, side), size, "top-left" if matching.causal else "center")
+    place = placed((side, side), size, "top-left" if matching.causal else "center")
     canvas = empty_canvas(exemplar.channels, size)
     canvas.values[:, *place] = to_bytes(exemplar.pixels[source_rows, source_columns])
     canvas.status[place] = 1
@@ -358,19 +240,23 @@ def _patch_corners(allowed: NDArray[np.bool_], side: int) -> NDArray[np.bool_]:
     return inside
 
 
-def _placed(inner: tuple[int, int], outer: tuple[int, int], anchor: Anchor) -> tuple[slice, slice]:
+def placed(inner: tuple[int, int], outer: tuple[int, int], anchor: Place) -> tuple[slice, slice]:
     """Return the rows and columns that an image of size ``inner`` takes at ``anchor`` of ``outer``."""
     free = outer[0] - inner[0], outer[1] - inner[1]
+    if isinstance(anchor, tuple):
+        return slice(anchor[0], anchor[0] + inner[0]), slice(anchor[1], anchor[1] + inner[1])
     top = 0 if "top" in anchor else free[0] if "bottom" in anchor else free[0] // 2
     left = 0 if "left" in anchor else free[1] if "right" in anchor else free[1] // 2
     return slice(top, top + inner[0]), slice(left, left + inner[1])
 
 
-def _image(inputs: Inputs, name: str) -> ImageInput | None:
+def image_of(inputs: Inputs, name: str) -> ImageInput | None:
+    """Return the image input of this name, if it is given."""
     given = inputs.get(name)
     return given if isinstance(given, ImageInput) else None
 
 
-def _marked(mask: ImageInput) -> NDArray[np.bool_]:
+def marked_in(mask: ImageInput) -> NDArray[np.bool_]:
+    """Return what is not black in a mask, (H, W) bool."""
     marked: NDArray[np.bool_] = mask.pixels.max(axis=2) > 0
     return marked

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
-from texlab_core.engine.inputs import exemplar_of
+from texlab_core.engine.inputs import ImageInput, exemplar_of
 from texlab_core.engine.params import Knob, Params
-from texlab_core.engine.registry import EXEMPLAR, InputSpec, Method, register
+from texlab_core.engine.registry import EXEMPLAR, Estimate, InputSpec, Method, register
 from texlab_core.engine.steps import Step
-from texlab_core.methods.efros_leung.fill import Anchor
+from texlab_core.methods.efros_leung.fill import Anchor, fills
 from texlab_core.methods.efros_leung.told import DISTANCE, EXACT_SHARE, GARBAGE, OWN_DISTANCE
 from texlab_core.methods.efros_leung.windows import (
     FULL_SPREAD,
@@ -28,11 +29,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.engine.inputs import ImageInput, Inputs
+    from texlab_core.engine.inputs import Inputs
     from texlab_core.engine.steps import FloatImage, Output
     from texlab_core.engine.steps import Step as AnyStep
     from texlab_core.engine.streams import Streams
     from texlab_core.kernels.neighbourhood_types import Pool
+    from texlab_core.methods.efros_leung.fill import Place
 
 _AROUND = ("shape", ("square", "disc", "cross"))
 
@@ -177,10 +179,55 @@ class EfrosLeungParams(Params):
                 "bottom-left": "bottom left",
                 "bottom": "bottom",
                 "bottom-right": "bottom right",
+                "at": "so many pixels from the left and from the top",
             },
             group="Beginning",
         ),
     ] = "center"
+    left: Annotated[
+        int,
+        Knob(
+            help="Pixels to the left of an image that is extended.",
+            low=0,
+            high=65535,
+            linear_to=256,
+            unit="px",
+            when=("anchor", ("at",)),
+            formerly=0,
+            group="Beginning",
+        ),
+    ] = 0
+    top: Annotated[
+        int,
+        Knob(
+            help="Pixels above an image that is extended.",
+            low=0,
+            high=65535,
+            linear_to=256,
+            unit="px",
+            when=("anchor", ("at",)),
+            formerly=0,
+            group="Beginning",
+        ),
+    ] = 0
+    reach: Annotated[
+        int,
+        Knob(
+            help="Fill hole by hole, and copy only from so near around each; 0: from everywhere.",
+            low=0,
+            high=4096,
+            linear_to=256,
+            unit="px",
+            stage="analysis",
+            formerly=0,
+            group="Beginning",
+        ),
+    ] = 0
+
+    @property
+    def place(self) -> Place:
+        """Where an image that is extended lies in the output."""
+        return (self.top, self.left) if self.anchor == "at" else self.anchor
 
     def matching(self, exemplar: ImageInput) -> Matching:
         """Return what decides which candidates of an exemplar match."""
@@ -204,19 +251,36 @@ class EfrosLeungModel:
     levels: NDArray[np.float32]
 
 
+def _by_parts(inputs: Inputs, params: EfrosLeungParams) -> bool:
+    return params.reach > 0 and fills(inputs)
+
+
 def check(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int]) -> None:
-    """Refuse what cannot work; see :func:`texlab_core.methods.efros_leung.fill.check_inputs`."""
-    from texlab_core.methods.efros_leung.fill import check_inputs
+    """Refuse what cannot work; see :func:`texlab_core.methods.efros_leung.checks.check_inputs`."""
+    from texlab_core.methods.efros_leung.checks import check_inputs
 
-    check_inputs(inputs, params.matching(exemplar_of(inputs)), size)
+    parts = _by_parts(inputs, params)
+    check_inputs(inputs, params.matching(exemplar_of(inputs)), size, params.place, by_parts=parts)
 
 
-def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None, EfrosLeungModel]:
-    """Lay the exemplar out for the search, and measure how well it explains itself."""
+def estimate(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int]) -> Estimate:
+    """Foretell the memory of a run, from the pixels of the images and of the output."""
+    images = sum(math.prod(each.size) for each in inputs.values() if isinstance(each, ImageInput))
+    if _by_parts(inputs, params):
+        # The picture and its maps, and one part.
+        return Estimate(None, 50 * math.prod(size) + 2**26)
+    return Estimate(None, 65 * (images + math.prod(size)))
+
+
+def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None, EfrosLeungModel | None]:
+    """Lay the exemplar out for the search, and measure how well it explains itself; None when filled by parts."""
     from texlab_core.methods.efros_leung.candidates import make_pool, to_bytes
     from texlab_core.methods.efros_leung.fill import allowed_centres
     from texlab_core.methods.efros_leung.level import leave_one_out
 
+    if _by_parts(inputs, params):
+        yield Step(1, 1, "every part has its own surroundings")
+        return None
     matching = params.matching(exemplar_of(inputs))
     values = to_bytes(exemplar_of(inputs).pixels)
     allowed = allowed_centres(inputs, matching)
@@ -227,16 +291,33 @@ def analyze(inputs: Inputs, params: EfrosLeungParams) -> Generator[AnyStep, None
 
 
 def synthesize(
-    model: EfrosLeungModel, inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], streams: Streams
+    model: EfrosLeungModel | None,
+    inputs: Inputs,
+    params: EfrosLeungParams,
+    size: tuple[int, int],
+    streams: Streams,
 ) -> Generator[AnyStep, None, Output]:
     """Fill everything that is unknown, and tell where it came from."""
+    from texlab_core.methods.efros_leung.blending import blended
+    from texlab_core.methods.efros_leung.by_parts import fill_by_parts
+
+    if model is None:
+        output = yield from fill_by_parts(inputs, params, size, streams, reach=params.reach, anchor=params.place)
+    else:
+        output = yield from _grow(model, inputs, params, size, streams)
+    return (yield from blended(output, inputs, params.place))
+
+
+def _grow(
+    model: EfrosLeungModel, inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], streams: Streams
+) -> Generator[AnyStep, None, Output]:
     from texlab_core.methods.efros_leung.evidence import report
     from texlab_core.methods.efros_leung.explain import Grown
     from texlab_core.methods.efros_leung.fill import begin, full_state, make_growth, settings_digest
 
     matching = params.matching(exemplar_of(inputs))
     exemplar = exemplar_of(inputs)
-    laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.anchor)
+    laying = begin(inputs, matching, size, streams, seed_patch=params.seed_patch, anchor=params.place)
     beginning = yield from through(laying, Step(0, size[0] * size[1], "laying out what is known"))
     settings = settings_digest(inputs, matching, size, streams)
     growth = make_growth(beginning, model.pool, matching, streams, settings)
@@ -257,12 +338,12 @@ def draft(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], seed:
     from texlab_core.methods.efros_leung.draft import draft
 
     return draft(
-        inputs,
+        {name: each for name, each in inputs.items() if name != "patches"},
         params.matching(exemplar_of(inputs)),
         size,
         seed,
         seed_patch=params.seed_patch,
-        anchor=params.anchor,
+        anchor=params.place,
     )
 
 
@@ -290,10 +371,22 @@ register(
                 background=0.0,
             ),
             InputSpec(
+                "blend",
+                "Instead of a mask: how much of the fill covers what was there, 0 (black) to 1 (white).",
+                required=False,
+                background=0.0,
+            ),
+            InputSpec(
                 "region",
                 "What is not black may be copied; as large as the exemplar.",
                 required=False,
                 background=0.0,
+            ),
+            InputSpec(
+                "patches",
+                "What was filled in the start image before: laid over it first, and not copied from.",
+                "arrays",
+                required=False,
             ),
             InputSpec("state", "Where a stopped or finished run stood, to go on from.", "arrays", required=False),
         ),
@@ -303,7 +396,7 @@ register(
             "growth that has lost its way: the same few pixels over and over",
         ),
         order=30,
-        bytes_per_pixel=65,
+        estimate=estimate,
         measures=("copied-share", "largest-copy", EXACT_SHARE.id, DISTANCE.id, OWN_DISTANCE.id, GARBAGE.id),
     )
 )
