@@ -27,7 +27,7 @@ from texlab_core.methods.efros_leung.patches import patches_of
 from texlab_core.work.tasks import relay, row_blocks, through
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Callable, Generator
 
     from numpy.typing import NDArray
 
@@ -35,8 +35,9 @@ if TYPE_CHECKING:
     from texlab_core.engine.steps import FloatImage
     from texlab_core.kernels.neighbourhood_types import Canvas
     from texlab_core.methods.efros_leung.fill import Place
-    from texlab_core.methods.efros_leung.method import EfrosLeungParams
     from texlab_core.methods.efros_leung.windows import Criterion, Matching
+
+    MatchingOf = Callable[[ImageInput], Matching]
 
 _PIXELS_AT_ONCE = 2**17
 
@@ -90,7 +91,7 @@ class Frame:
 
 
 def fill_by_parts(
-    inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], streams: Streams, *, reach: int, anchor: Place
+    inputs: Inputs, matching_of: MatchingOf, size: tuple[int, int], streams: Streams, *, reach: int, anchor: Place
 ) -> Generator[Step, None, Output]:
     """Fill what is unknown, part after part, each from the surroundings of that part.
 
@@ -98,8 +99,8 @@ def fill_by_parts(
     ----------
     inputs
         ``exemplar``, and a ``start``, ``mask`` or ``blend``; ``patches`` are laid over the picture first.
-    params
-        The window and the match set.
+    matching_of
+        How windows are compared, for an image that is copied from.
     size
         Height and width of the output.
     streams
@@ -117,13 +118,15 @@ def fill_by_parts(
     frame = yield from _laid_out(inputs, size, anchor)
     frame.total = int(np.count_nonzero(frame.unknown))
     boxes = yield from relay(parts_of(frame.unknown), lambda _: frame.step("dividing"))
+    first = matching_of(exemplar_of(inputs))
+    reach, criterion = max(reach, first.window), first.criterion
     searched = 0
     for number, box in enumerate(boxes):
         stage = "growing" if len(boxes) == 1 else f"growing part {number + 1} of {len(boxes)}"
         searched += yield from _fill_part(
-            inputs, params, frame, box, PartStreams(streams, number), max(reach, params.window), stage
+            inputs, matching_of, frame, box, PartStreams(streams, number), reach, stage
         )
-    return (yield from _output(frame, params.criterion, boxes, searched))
+    return (yield from _output(frame, criterion, boxes, searched))
 
 
 def _laid_out(inputs: Inputs, size: tuple[int, int], anchor: Place) -> Generator[Step, None, Frame]:
@@ -173,7 +176,7 @@ def _laid_out(inputs: Inputs, size: tuple[int, int], anchor: Place) -> Generator
 
 def _fill_part(
     inputs: Inputs,
-    params: EfrosLeungParams,
+    matching_of: MatchingOf,
     frame: Frame,
     box: Box,
     streams: PartStreams,
@@ -184,9 +187,9 @@ def _fill_part(
     wanted = frame.unknown[box].copy()
     if not wanted.any():
         return 0
-    around = dilated(box, params.window // 2, frame.unknown.shape)
-    exemplar, corner, region = _surroundings(inputs, params, frame, box, reach)
-    matching = params.matching(exemplar)
+    exemplar, corner, region = _surroundings(inputs, matching_of, frame, box, reach)
+    matching = matching_of(exemplar)
+    around = dilated(box, matching.window // 2, frame.unknown.shape)
     part: dict[str, Input] = {
         "exemplar": exemplar,
         "start": _image_input(frame.image[around], "the picture around a part"),
@@ -244,20 +247,20 @@ def _take(
 
 
 def _surroundings(
-    inputs: Inputs, params: EfrosLeungParams, frame: Frame, box: Box, reach: int
+    inputs: Inputs, matching_of: MatchingOf, frame: Frame, box: Box, reach: int
 ) -> tuple[ImageInput, tuple[int, int], NDArray[np.bool_]]:
     """Return what a part is copied from, where that begins in the exemplar, and what of it may be copied."""
     exemplar, region = exemplar_of(inputs), region_of(inputs)
     whole = np.ones(exemplar.size, bool) if region is None else region
     if not frame.own:
-        _check_left(whole, params.matching(exemplar))
+        _check_left(whole, matching_of(exemplar))
         return exemplar, (0, 0), whole
     shift = frame.place[0].start, frame.place[1].start
     while True:
         near = _nearest(box, shift, exemplar.size, reach)
         pixels = exemplar.pixels[near]
         part = _image_input(pixels, exemplar.name)
-        matching = params.matching(part)
+        matching = matching_of(part)
         # Inside of this part: what lies around it is no exemplar, whatever the border's knob says.
         allowed = whole[near] & may_be_copied(size_of(near), matching, None, frame.barred[near])
         if whole_windows(allowed, matching) > 0:

@@ -302,7 +302,9 @@ def synthesize(
     from texlab_core.methods.efros_leung.by_parts import fill_by_parts
 
     if model is None:
-        output = yield from fill_by_parts(inputs, params, size, streams, reach=params.reach, anchor=params.place)
+        output = yield from fill_by_parts(
+            inputs, params.matching, size, streams, reach=params.reach, anchor=params.place
+        )
     else:
         output = yield from _grow(model, inputs, params, size, streams)
     return (yield from blended(output, inputs, params.place))
