@@ -104,8 +104,9 @@ def sweep(
     method: str = "heeger-bergen",
     *,
     vary: Mapping[str, Sequence[object]],
-    size: tuple[int, int] | None = None,
+    size: tuple[int, ...] | None = None,
     seed: int = 0,
+    inputs: Mapping[str, Input] | None = None,
     on_step: Callable[[Step], None] | None = None,
     **params: object,
 ) -> Series:
@@ -113,7 +114,7 @@ def sweep(
 
     Parameters
     ----------
-    image, method, size, seed, on_step, **params
+    image, method, size, seed, inputs, on_step, **params
         As for :func:`synthesize`.
     vary
         The values of each parameter (or of ``seed``), by name. All combinations are taken; the first one changes
@@ -155,7 +156,7 @@ def sweep(
         jobs.append(
             Job(
                 method=method,
-                inputs={"exemplar": exemplar},
+                inputs={**(inputs or {}), "exemplar": exemplar},
                 params=base.replace(**knobs),
                 size=size,  # type: ignore[arg-type]  # None takes the exemplar's
                 seed=change.get("seed", seed),
@@ -172,6 +173,7 @@ def compare(
     size: tuple[int, int] | None = None,
     seed: int = 0,
     same_phase: bool = False,
+    inputs: Mapping[str, Input] | None = None,
     on_step: Callable[[Step], None] | None = None,
 ) -> Series:
     """Run several methods on one exemplar; every result is made when it is asked for.
@@ -186,6 +188,8 @@ def compare(
         Of the first method; each other one takes the next.
     same_phase
         All take the same seed, which gives the spectral methods the same random phase.
+    inputs
+        Further inputs by name; every method takes those that it knows.
 
     Returns
     -------
@@ -200,7 +204,8 @@ def compare(
     from texlab_core.sheets.comparison import FIRST_SIGHT, plan
 
     exemplar = as_exemplar(image)
-    jobs = plan(exemplar, FIRST_SIGHT if methods is None else methods, size=size, seed=seed, same_phase=same_phase)
+    names = FIRST_SIGHT if methods is None else methods
+    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=same_phase, inputs=inputs)
     return Series(jobs, [{"method": job.method, "seed": job.seed} for job in jobs], on_step=on_step)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
@@ -160,3 +161,33 @@ def test_parameters_of_no_method(texlab: Texlab, setting: str, says: str) -> Non
         "compare", GRASS, "--methods", "car", *SMALL, "--out", "a.png", *["--set", "car.synthesis=spectrum"] * 2
     )
     assert (twice.code, "synthesis is set twice." in twice.err) == (2, True)
+
+
+def test_a_further_input_reaches_every_method_that_takes_it(texlab: Texlab) -> None:
+    words = ("--input", "second=gallery:stochastic-rock", "--input-crop", "second=96x96+0+0", "--json")
+    shown = texlab(
+        "compare", GRASS, "--methods", "tiling,mixture", "--size", "40x32", *SMALL, *words, "--out", "a.png"
+    )
+    assert (shown.code, shown.err) == (0, "")
+    exemplar, second = (
+        as_exemplar(as_exemplar(name), crop=Crop(0, 0, 96, 96)) for name in (GRASS, "gallery:stochastic-rock")
+    )
+    jobs = plan(exemplar, ("tiling", "mixture"), size=(32, 40), inputs={"second": second})
+    found = [each["measures"] for each in json.loads(shown.out)["methods"]]
+    assert found == [dict(each.measures) for each in compare(jobs)]
+    with pytest.raises(InputError, match=r"a further input of a compared method \(they take none\)"):
+        plan(exemplar, ("tiling",), inputs={"second": second})
+
+
+@pytest.mark.parametrize("role", ["third", "exemplar", "nothing"])
+def test_inputs_that_no_method_takes(texlab: Texlab, role: str) -> None:
+    shown = texlab("compare", GRASS, "--methods", "msg", *SMALL, "--out", "a.png", "--input", f"{role}={GRASS}")
+    assert shown.code == 2
+    assert f"input: must be a further input of one of the compared methods (msg), got '{role}'" in shown.err
+
+
+def test_a_solid_is_as_deep_as_its_shorter_side() -> None:
+    exemplar = as_exemplar(GRASS)
+    jobs = plan(exemplar, ("msg", "solid"), size=(20, 30))
+    assert [job.size for job in jobs] == [(20, 30), (20, 20, 30)]
+    assert plan(exemplar, ("solid",))[0].size == (64, 64, 64)

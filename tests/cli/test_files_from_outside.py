@@ -12,7 +12,6 @@ import pytest
 
 import texlab
 import texlab_core
-from texlab.cli.commands._sources import _load_arrays
 from texlab.cli.defaults import _tables
 from texlab.storage.kept_exemplar import Kept
 from texlab.storage.kept_exemplar import load as load_kept
@@ -32,6 +31,7 @@ from texlab_core.files.regular import open_regular, read_regular
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats import maps
 from texlab_core.images.formats.volumes import read_volume
+from texlab_core.images.named_input import read_arrays
 from texlab_core.methods.spectral.codefile import load_code_input, read_code
 from texlab_core.sheets.sweep_recipes import find_sweep
 
@@ -130,7 +130,7 @@ READERS: dict[str, tuple[str, Callable[[Path], Any]]] = {
     "source of the window": ("a.png", read_source),
     "defaults of the command line": ("a.toml", _tables),
     "settings": ("settings.json", read_settings),
-    "arrays of the command line": ("a.npz", _load_arrays),
+    "arrays": ("a.npz", read_arrays),
     "solid": ("a.npy", read_volume),
     "solid as a stack": ("a.tif", read_volume),
     "kept exemplar": ("exemplar.npy", lambda path: load_kept(Kept(path, "x"))),

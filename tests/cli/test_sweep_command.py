@@ -47,6 +47,16 @@ def test_one_knob_for_people(call, tmp_path):
     assert (recipe.exemplar.crop.width, recipe.exemplar.crop.top) == (32, 4)
 
 
+def test_in_a_place_of_its_own_the_sheet_is_the_same(call, tmp_path):
+    words = (GRAVEL, "--method", "stub", "--vary", "level=0:2:3", "--crop", "32x24+8+4", "--size", "40x20")
+    lines = call(*words).out
+    sheet = (tmp_path / "sheet.png").read_bytes()
+    assert call(*words, "--processes", 1).out == lines
+    assert (tmp_path / "sheet.png").read_bytes() == sheet
+    assert "processes: must be a whole number from 1 to 256" in call(*words, "--processes", 0, code=2).err
+    assert "cluster: must be an address" in call(*words, "--cluster", "here", code=2).err
+
+
 def test_a_sheet_can_be_made_again_from_itself(call, tmp_path):
     call(
         GRAVEL,

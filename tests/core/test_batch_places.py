@@ -160,6 +160,19 @@ def test_processes_share_the_work_and_leave_nothing_behind(tmp_path: Path) -> No
     assert not (tmp_path / "scratch").exists()
 
 
+def test_kept_processes_serve_the_next_run_and_results_travel(tmp_path: Path) -> None:
+    place = Processes(1, tmp_path / "scratch")
+    with place.kept():
+        first, second = (dict(run_jobs(iter(jobs((4, 5))), place=place, finish=shape_of)) for _ in range(2))
+        (travelled,) = [outcome.value for _, outcome in run_jobs(iter(jobs((6,))), place=place)]
+    assert {each.value[1] for each in first.values()} == {each.value[1] for each in second.values()}
+    assert os.getpid() not in {each.value[1] for each in first.values()}
+    assert not (tmp_path / "scratch").exists()
+    (alone,) = [outcome.value for _, outcome in run_jobs(iter(jobs((6,))))]
+    assert np.array_equal(travelled.image, alone.image)
+    assert (travelled.versions, travelled.curves) == (alone.versions, alone.curves)
+
+
 def test_inputs_that_nobody_needs_any_more_are_removed(tmp_path: Path) -> None:
     scratch = tmp_path / "scratch"
     most = []

@@ -9,13 +9,18 @@ import pytest
 
 from tests.core.batch_tools import photos
 from texlab_core.batch.choices import ExemplarChoice, Grid, choices_of
+from texlab_core.batch.further import load_further
 from texlab_core.batch.plan import PlanError, SizeRule, bundled_plans, find_plan, plan_from_json, read_plan
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import Preset, write_preset
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import Job
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.gallery import gallery
+from texlab_core.methods.spectral.codefile import write_code
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -166,7 +171,7 @@ def test_presets_and_settings(folder: Path) -> None:
         ({"methods": [{"method": "de-bonet", "set": {"alpha": -1}}]}, "alpha: must be"),
         ({"methods": ["de-bonet", "de-bonet"]}, "de-bonet is there twice"),
         ({"presets": ["nothing"]}, "no preset called"),
-        ({"presets": [1]}, "presets: must be a text"),
+        ({"presets": [1]}, "presets: must hold names or objects"),
         ({"seeds": []}, "seeds: must be a list"),
         ({"seeds": 3}, "seeds: must be a list"),
         ({"seeds": [-1]}, "seed: must be a whole number"),
@@ -244,3 +249,72 @@ def test_the_bundled_plan_is_de_bonets_experiment() -> None:
         assert exemplar.channels == 3
     with pytest.raises(PlanError, match="there are gallery:de-bonet-800"):
         find_plan("gallery:nothing")
+
+
+def test_further_inputs_of_a_method(folder: Path) -> None:
+    second = {"from": "in/photo-1.png", "scale": 0.5, "crop": "10x8+1+2"}
+    plan = plan_from_json(
+        {
+            "inputs": ["in"],
+            "methods": [
+                {"method": "mixture", "inputs": {"second": "gallery:stochastic-rock"}},
+                {"method": "mixture", "set": {"weight": 0.25}, "inputs": {"second": second}},
+                {"method": "mixture", "inputs": {"second": as_exemplar("gallery:oriented-fur")}, "name": "read"},
+                {"method": "msg", "inputs": {"code": "code.msg.json"}},
+            ],
+        },
+        folder=_with_code(folder),
+    )
+    assert [each.name for each in plan.variants] == [
+        "mixture (second gallery:stochastic-rock)",
+        "mixture (weight 0.25, second in/photo-1.png)",
+        "read",
+        "msg (code code.msg.json)",
+    ]
+    loaded = [load_further(each.inputs, find_method(each.method)) for each in plan.variants]
+    taken = as_exemplar(folder / "in" / "photo-1.png", scale=0.5, crop=Crop(2, 1, 8, 10))
+    assert loaded[0]["second"].sha256 == as_exemplar("gallery:stochastic-rock").sha256
+    assert loaded[1]["second"].sha256 == taken.sha256
+    assert loaded[2]["second"].sha256 == as_exemplar("gallery:oriented-fur").sha256
+    assert type(loaded[3]["code"]).__name__ == "DataInput"
+
+
+def _with_code(folder: Path) -> Path:
+    code = run(Job(method="msg", inputs={"exemplar": as_exemplar("gallery:stochastic-rock", scale=0.25)})).model
+    write_code(code.code, folder / "code.msg.json")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("inputs", "sentence"),
+    [
+        ({}, "Mixture needs the input second"),
+        ([], "inputs: must be an object as in"),
+        ({"second": 3}, "second must be a file, gallery:NAME or an object"),
+        ({"second": {"scale": 1}}, "second must be a file, gallery:NAME or an object"),
+        ({"second": {"from": "in/photo-0.png", "size": 1}}, "size"),
+        ({"second": {"from": "in/photo-0.png", "crop": "1x"}}, "crops: must be width, height, left and top"),
+        ({"second": {"from": "in/photo-0.png", "crop": 5}}, "crops: must be width, height, left and top"),
+        ({"second": {"from": "in/photo-0.png", "scale": True}}, "scales: must be above 0 and at most 1"),
+        ({"second": "in/none.png"}, "there is no file 'in/none.png' for second"),
+        ({"second": "in"}, "there is no file 'in' for second"),
+        ({"second": "gallery:none"}, "gallery"),
+        ({"second": "in/photo-0.png", "nope": "in/photo-0.png"}, "input: must be one of exemplar, second"),
+        ({"exemplar": "in/photo-0.png"}, "the exemplars stand in the plan's own inputs"),
+    ],
+)
+def test_further_inputs_that_do_not_fit(folder: Path, inputs: Any, sentence: str) -> None:
+    with pytest.raises(PlanError) as caught:
+        plan_from_json({"inputs": ["in"], "methods": [{"method": "mixture", "inputs": inputs}]}, folder=folder)
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_presets_take_further_inputs_too(folder: Path) -> None:
+    write_preset(Preset.of("half", "mixture", find_method("mixture").params(weight=0.5)), folder / "half.json")
+    given = {"preset": "half.json", "inputs": {"second": "in/photo-1.png"}}
+    (variant,) = plan_from_json({"inputs": ["in"], "presets": [given]}, folder=folder).variants
+    assert variant.name == "mixture/half (second in/photo-1.png)"
+    assert [role for role, _ in variant.inputs] == ["second"]
+    with pytest.raises(PlanError, match="presets: must hold names or objects"):
+        plan_from_json({"inputs": ["in"], "presets": [{"inputs": {}}]}, folder=folder)

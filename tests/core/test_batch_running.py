@@ -14,6 +14,7 @@ import pytest
 
 from tests.core.batch_tools import files_of, shape_of, small_plan
 from texlab_core.api import synthesize
+from texlab_core.batch import parcels
 from texlab_core.batch.folder import BatchFolder, file_stem
 from texlab_core.batch.orders import make_order
 from texlab_core.batch.parcels import Packer
@@ -62,6 +63,28 @@ def test_a_picture_carries_its_recipe(tmp_path: Path) -> None:
     recipe = read_recipe(tmp_path / "out" / row.picture)
     assert (recipe.method, recipe.seed, recipe.size) == ("heeger-bergen", 7, (12, 20))
     assert recipe.job().inputs["exemplar"].sha256 == plan.exemplars[0].load().sha256
+
+
+def test_further_inputs_of_a_method(tmp_path: Path) -> None:
+    small_plan(tmp_path)
+    (tmp_path / "broken.png").write_bytes(b"no image")
+    methods = [
+        {"method": "mixture", "set": {"weight": 0.4}, "inputs": {"second": "in/photo-1.png"}, "name": "mixed"},
+        {"method": "mixture", "inputs": {"second": "broken.png"}, "name": "broken"},
+    ]
+    plan = small_plan_of(tmp_path, inputs=["in/photo-0.png", "in/photo-2.png"], methods=methods, sizes=["20x12"])
+    result = run_batch(plan, tmp_path / "out")
+    assert (result.made, result.failed) == (2, 2)
+    (error,) = {row.error for row in result.rows if row.error}
+    assert error.startswith("broken.png: is not an image")
+    second = as_exemplar(tmp_path / "in" / "photo-1.png")
+    for row in result.rows[::2]:
+        exemplar = tmp_path / str(row.about["input"])
+        alone = synthesize(exemplar, "mixture", size=(12, 20), inputs={"second": second}, weight=0.4)
+        kept = read_image(tmp_path / "out" / row.picture, "picture").values
+        assert np.array_equal(kept, quantize(alone.image, 255).reshape(kept.shape))
+        assert row.about["inputs"] == {"second": {"name": second.name, "sha256": second.sha256}}
+        assert read_recipe(tmp_path / "out" / row.picture).job().inputs["second"].sha256 == second.sha256
 
 
 def test_solids_are_kept_as_stacks(tmp_path: Path) -> None:
@@ -317,28 +340,43 @@ def test_a_hash_depends_on_everything_that_the_result_does(monkeypatch: pytest.M
     assert key() != different[0]
 
 
+def test_the_hash_of_a_source_is_made_once_while_it_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    hashed: list[Any] = []
+    whole = parcels.hash_arrays
+    monkeypatch.setattr(parcels, "hash_arrays", lambda arrays: hashed.append(1) or whole(arrays))
+    packer = Packer()
+    first, second = (as_exemplar(np.full((6, 6), value, np.float32)) for value in (0.1, 0.2))
+    packed = [packer.pack({"exemplar": first, "second": second})[1] for _ in range(5)]
+    assert len(hashed) == 2
+    assert len({name for each in packed for name in each}) == 2
+    for number in range(30):
+        # Arrays that are gone leave their places in memory to others.
+        (digest,) = packer.pack({"exemplar": as_exemplar(np.full((6, 6), number / 30, np.float32))})[1]
+        assert digest == whole({"pixels": np.full((6, 6, 1), np.float32(number / 30))})
+
+
 def test_every_kind_of_input_travels() -> None:
     pixels = np.random.Generator(np.random.PCG64(1)).random((16, 18, 3), np.float32)
     image = as_exemplar(pixels, scale=0.5, crop=Crop(1, 1, 4, 5), name="image")
     arrays = ArraysInput({"a": np.arange(4), "b": np.ones((2, 2))}, "state")
     data = DataInput({"x": [1, 2]}, "code")
-    slips, parcels = Packer().pack({"exemplar": image, "state": arrays, "code": data, "again": as_exemplar(image)})
-    assert len(parcels) == 2, "what two inputs share is sent once"
+    slips, sent = Packer().pack({"exemplar": image, "state": arrays, "code": data, "again": as_exemplar(image)})
+    assert len(sent) == 2, "what two inputs share is sent once"
     for role, given in {"exemplar": image, "state": arrays, "code": data}.items():
-        found = slips[role].unpack(parcels)
+        found = slips[role].unpack(sent)
         assert (found.sha256, found.name, type(found)) == (given.sha256, given.name, type(given))
-    spoiled = {name: {key: value + 0.25 for key, value in each.items()} for name, each in parcels.items()}
+    spoiled = {name: {key: value + 0.25 for key, value in each.items()} for name, each in sent.items()}
     with pytest.raises(InputError, match="has other values where it arrived"):
         slips["state"].unpack(spoiled)
 
 
 def test_another_version_there_is_refused() -> None:
     job = Job(method="tiling", inputs={"exemplar": as_exemplar(np.eye(8, dtype=np.float32))})
-    order, parcels = make_order(job, shape_of)
+    order, sent = make_order(job, shape_of)
     import dataclasses
 
     other = dataclasses.replace(order, versions={**order.versions, "numpy": "0.1"})
-    outcomes = list(InProcess().run(iter([(other, parcels), (order, parcels)])))
+    outcomes = list(InProcess().run(iter([(other, sent), (order, sent)])))
     assert "numpy" in outcomes[0].error
     assert "started with 0.1" in outcomes[0].error
     assert outcomes[1].value[0] == (8, 8, 1)

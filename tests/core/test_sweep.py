@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F401
 
+from texlab_core.batch.places import InProcess
+from texlab_core.batch.running import run_jobs
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
@@ -19,7 +22,7 @@ from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.measures.registry import measure_quick
 from texlab_core.measures.subject import Subject
 from texlab_core.sheets.sweep import Cell, Sweep, Vary, sweep_of
-from texlab_core.sheets.sweep_running import run_sweep
+from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
 
 pytestmark = pytest.mark.usefixtures("stub")
 
@@ -316,3 +319,21 @@ def test_cancel_while_waiting_for_a_place():
         run_sweep(sweep_of(base(), ["level=0:2:5"]), should_stop=lambda: True, workers=2, places=places)
     assert len(places.held) == 1
     places.release()
+
+
+def test_cells_that_run_elsewhere_are_the_same():
+    sweep = sweep_of(base(), ["level=0,1,2", "seed=1,2"])
+    told, shares = [], []
+    elsewhere = partial(run_jobs, place=InProcess())
+    cells = run_sweep_elsewhere(sweep, told.append, elsewhere=elsewhere, on_progress=shares.append)
+    for cell, here in zip(cells, run_sweep(sweep), strict=True):
+        assert (cell.index, cell.label, cell.error) == (here.index, here.label, here.error)
+        assert cell.measures == here.measures
+        assert cell.job is cell.result.job is sweep.jobs[cell.index]
+        np.testing.assert_array_equal(cell.result.image, here.result.image)
+    assert [cell.index for cell in told] == list(range(6))
+    assert shares == [(place + 1) / 6 for place in range(6)]
+    failing = run_sweep_elsewhere(sweep_of(base(), ["level=0,3"]), elsewhere=elsewhere)
+    assert [cell.error for cell in failing] == [cell.error for cell in run_sweep(sweep_of(base(), ["level=0,3"]))]
+    with pytest.raises(Cancelled):
+        run_sweep_elsewhere(sweep, elsewhere=elsewhere, should_stop=lambda: True)

@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 import threading
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pytest
 from stub_method import know
 
+from texlab_core.batch.places import InProcess
+from texlab_core.batch.running import run_jobs
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.documents.presets import write_preset
 from texlab_core.engine import registry
+from texlab_core.engine.cache import AnalysisCache
+from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import Job
 from texlab_core.engine.params import Knob, Params, describe
 from texlab_core.engine.registry import Method
@@ -23,7 +28,7 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.method import DeBonetParams
-from texlab_core.sheets.tuning import FRESH_SEEDS, SEARCH_SEEDS, tune
+from texlab_core.sheets.tuning import FRESH_SEEDS, SEARCH_SEEDS, _rounds, tune
 from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
@@ -98,6 +103,30 @@ def test_the_same_job_gives_the_same_tuning_on_any_number_of_threads(job: Job) -
     one, two = (tune(job, ("x", "y", "n"), budget=90, workers=count) for count in (1, 3))
     assert one.to_json() == two.to_json()
     assert [each.index for each in one.trials] == list(range(len(one.trials)))
+
+
+def test_trials_that_run_elsewhere_give_the_same_tuning(job: Job) -> None:
+    here = tune(job, ("x", "y", "n"), budget=60)
+    there = tune(job, ("x", "y", "n"), budget=60, elsewhere=partial(run_jobs, place=InProcess()))
+    assert there.to_json() == here.to_json()
+
+
+def test_the_rows_to_vary_are_known_where_no_trial_ran() -> None:
+    exemplar = as_exemplar(as_exemplar("gallery:stochastic-gravel"), crop=Crop(40, 40, 32, 32))
+    base = Job(method="de-bonet", inputs={"exemplar": exemplar}, size=(32, 32))
+    model = run(base).model
+    asked = _rounds(base, (), AnalysisCache(), None)(Measured(params=base.params, kept=-4.0, gained=0.3), -3.1)
+    phase, params = next(asked)
+    while phase != "rows":
+        phase, params = asked.send([])
+    changed = {len(each.to_json()["thresholds"]) for each in params}
+    assert changed == {len(model.feature_names)}
+    # All rows, twice if the first turn helped; it does not when nothing is answered.
+    rows = 0
+    while phase == "rows":
+        rows += 1
+        phase, params = asked.send([])
+    assert (rows, phase) == (model.depth, "cells")
 
 
 def test_a_larger_limit_and_a_larger_budget_never_make_it_worse(job: Job) -> None:

@@ -10,7 +10,10 @@ from PySide6.QtCore import Qt
 
 from texlab.window.batch_desk import plan_data
 from texlab.window.batch_dialog import BatchDialog, BatchRequest
+from texlab_core.batch.plan import plan_from_json
 from texlab_core.batch.running import BatchResult, Progress
+from texlab_core.engine.registry import find_method
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.writing import write_image
 
 if TYPE_CHECKING:
@@ -94,6 +97,16 @@ def test_the_columns_become_the_methods_of_the_plan(explorer: Any) -> None:
     one = plan_data(BatchRequest("", ("in",), False, 1, ("1x",), "out", 1), explorer.session)
     chosen = explorer.session.selected_column
     assert [each["set"] for each in one["methods"]] == [chosen.params.to_json()]
+
+
+def test_the_further_inputs_of_columns_come_along(explorer: Any, tmp_path: Path, photos: Path) -> None:
+    second = as_exemplar("gallery:stochastic-rock", scale=0.25)
+    session = explorer.session
+    session.set_method(session.state.columns[0].id, "mixture", find_method("mixture").params())
+    session.set_inputs(session.state.columns[0].id, (("second", second),), "another")
+    data = plan_data(BatchRequest("", (str(photos),), True, 1, ("1x",), "out", 1), session)
+    plan = plan_from_json(data, folder=tmp_path)
+    assert plan.variants[0].inputs == (("second", second),)
 
 
 def test_a_batch_runs_beside_the_window(explorer: Any, qtbot: Any, photos: Path, tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ class BatchDesk:
 
 
 def plan_data(asked: BatchRequest, session: Session) -> dict[str, Any]:
-    """Return the plan that the fields and the columns stand for, as JSON data."""
+    """Return the plan that the fields and the columns stand for, as data; further inputs as they are."""
     chosen = session.selected_column
     columns = session.state.columns if asked.all_columns or chosen is None else (chosen,)
     methods: list[dict[str, Any]] = []
@@ -83,7 +83,14 @@ def plan_data(asked: BatchRequest, session: Session) -> dict[str, Any]:
         taken[column.method] = taken.get(column.method, 0) + 1
         number = taken[column.method]
         name = column.method if number == 1 else f"{column.method} {number}"
-        methods.append({"method": column.method, "set": column.params.to_json(), "name": name})
+        methods.append(
+            {
+                "method": column.method,
+                "set": column.params.to_json(),
+                "inputs": dict(column.inputs),
+                "name": name,
+            }
+        )
     return {
         "inputs": list(asked.inputs),
         "methods": methods,

@@ -236,12 +236,16 @@ def _scales(entry: dict[str, Any]) -> list[float]:
     if "scale" in entry and "scales" in entry:
         raise InputError("scales: give either one scale or several, not both.")
     given = entry.get("scales", [entry.get("scale", 1.0)])
-    good = (
-        isinstance(given, list) and given and all(type(each) in (int, float) and 0 < each <= 1 for each in given)
-    )
-    if not good:
+    if not isinstance(given, list) or not given:
+        raise InputError(f"scales: must be a list of numbers, got {strict_json.shorten(given)}.")
+    return [scale_of(each) for each in given]
+
+
+def scale_of(given: object) -> float:
+    """Return the factor by which an image is reduced; raises ``InputError``."""
+    if not isinstance(given, int | float) or isinstance(given, bool) or not 0 < given <= 1:
         raise InputError(f"scales: must be above 0 and at most 1, got {strict_json.shorten(given)}.")
-    return [float(each) for each in given]
+    return float(given)
 
 
 def _crops(given: object) -> list[Crop | Grid | None]:
@@ -257,11 +261,13 @@ def _crops(given: object) -> list[Crop | Grid | None]:
     texts = _texts(given, "crops")
     if not texts:
         raise InputError("crops: at least one is needed.")
-    return [_crop(text) for text in texts]
+    return [crop_of(text) for text in texts]
 
 
-def _crop(text: str) -> Crop:
-    found = re.fullmatch(r"([0-9]{1,9})[x×]([0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text)
+def crop_of(text: object) -> Crop:
+    """Return the rectangle from ``WxH+X+Y``; raises ``InputError``."""
+    pattern = r"([0-9]{1,9})[x×]([0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})"
+    found = re.fullmatch(pattern, text) if isinstance(text, str) else None
     if found is None:
         raise InputError(
             'crops: must be width, height, left and top as in 256x192+10+20, or an object as in {"size": '

@@ -54,6 +54,17 @@ class Cluster:
         self.width = self._local or 1
         if importlib.util.find_spec("distributed") is None:
             raise InputError("A cluster needs Dask, which is not installed: pip install texlab[cluster].")
+        self._client: Any = None
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """Stay connected from one run to the next; see :meth:`texlab_core.batch.places.Place.kept`."""
+        with contextlib.ExitStack() as stack:
+            self._client = self._connect(stack)
+            try:
+                yield
+            finally:
+                self._client = None
 
     def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
         """Carry orders out; see :meth:`texlab_core.batch.places.Place.run`.
@@ -64,7 +75,7 @@ class Cluster:
             When the scheduler cannot be reached.
         """
         with contextlib.ExitStack() as stack:
-            client = self._connect(stack)
+            client = self._client or self._connect(stack)
             yield from _Shipping(client, self._count_workers).outcomes(iter(orders), should_stop)
 
     def _connect(self, stack: contextlib.ExitStack) -> Any:

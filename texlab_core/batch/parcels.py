@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Mapping
@@ -74,11 +75,11 @@ class Slip:
 
 
 class Packer:
-    """Packs inputs; the hash of a source that several inputs in a row share is computed once."""
+    """Packs inputs; the hash of a source that several inputs share is computed once, while the source is there."""
 
     def __init__(self) -> None:
-        self._source: NDArray[Any] | None = None
-        self._hash = ""
+        # A source is known as long as someone else holds it: scans are large.
+        self._hashes: dict[int, tuple[weakref.ref[NDArray[Any]], str]] = {}
 
     def pack(self, inputs: Inputs) -> tuple[Mapping[str, Slip], Mapping[str, Parcel]]:
         """Return the slips by role, and the parcels that they need by hash."""
@@ -97,11 +98,17 @@ class Packer:
     def _image(self, given: ImageInput, parcels: dict[str, Parcel]) -> Slip:
         origin = given.origin
         pixels = given.pixels if origin is None else origin.pixels
-        if self._source is not pixels:
-            self._source, self._hash = pixels, hash_arrays({"pixels": pixels})
-        parcels[self._hash] = {"pixels": pixels}
+        digest = self._hash_of(pixels)
+        parcels[digest] = {"pixels": pixels}
         scale, crop = (1.0, None) if origin is None else (origin.scale, origin.crop)
-        return Slip("image", given.name, given.sha256, self._hash, scale, crop, given.notes)
+        return Slip("image", given.name, given.sha256, digest, scale, crop, given.notes)
+
+    def _hash_of(self, pixels: NDArray[Any]) -> str:
+        known = self._hashes.get(id(pixels))
+        if known is None or known[0]() is not pixels:
+            self._hashes = {place: each for place, each in self._hashes.items() if each[0]() is not None}
+            known = self._hashes[id(pixels)] = weakref.ref(pixels), hash_arrays({"pixels": pixels})
+        return known[1]
 
 
 class Unpacked:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Generator, Iterable, Mapping
 from typing import TYPE_CHECKING, Protocol
 
@@ -9,6 +10,9 @@ from texlab_core.batch.orders import Order, Outcome, Workbench
 from texlab_core.errors import Cancelled
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
+
     from texlab_core.batch.parcels import Parcel
 
 Loaded = tuple[Order, Mapping[str, "Parcel"]]
@@ -39,6 +43,10 @@ class Place(Protocol):
         """
         ...
 
+    def kept(self) -> AbstractContextManager[None]:
+        """Keep what a run starts (processes, a cluster, analyses) for the next ones within the context."""
+        ...
+
 
 class InProcess:
     """One order after the other, in the calling thread."""
@@ -46,9 +54,21 @@ class InProcess:
     title = "this process"
     width = 1
 
+    def __init__(self) -> None:
+        self._bench: Workbench | None = None
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """Keep analyses from one run to the next; see :meth:`Place.kept`."""
+        self._bench = Workbench()
+        try:
+            yield
+        finally:
+            self._bench = None
+
     def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
         """Carry orders out in their order; see :meth:`Place.run`."""
-        bench = Workbench()
+        bench = self._bench or Workbench()
         for order, parcels in orders:
             if should_stop is not None and should_stop():
                 raise Cancelled

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.choices import ExemplarChoice, choices_of
+from texlab_core.batch.further import Further, further_of
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.engine.job import check_seed
 from texlab_core.engine.registry import find_method
@@ -40,11 +41,12 @@ class PlanError(InputError):
 
 @dataclass(frozen=True)
 class Variant:
-    """A method with its parameters, under a name that is unique in its plan."""
+    """A method with its parameters and further inputs, under a name that is unique in its plan."""
 
     name: str
     method: str
     params: Params
+    inputs: Further = ()
 
 
 @dataclass(frozen=True)
@@ -242,7 +244,7 @@ def _plan(data: object, folder: Path, presets: PresetStore | None) -> Plan:
         raise PlanError("inputs: is missing.")
     if "methods" not in data and "presets" not in data:
         raise PlanError("methods: is missing, and there are no presets either.")
-    variants = [_of_method(each) for each in _list(data, "methods")]
+    variants = [_of_method(each, folder) for each in _list(data, "methods")]
     variants += [_of_preset(each, folder, presets) for each in _list(data, "presets")]
     bits = data.get("bits", 8)
     if type(bits) is not int or bits not in _BITS:
@@ -286,29 +288,48 @@ def _text(given: object, key: str) -> str:
     return given
 
 
-def _of_method(given: object) -> Variant:
+def _of_method(given: object, folder: Path) -> Variant:
     entry = {"method": given} if isinstance(given, str) else given
     if not isinstance(entry, dict) or "method" not in entry:
         raise PlanError(
             'methods: must hold ids of methods, or objects as in {"method": "de-bonet", "set": {"alpha": 0.2}}, '
             f"got {strict_json.shorten(given)}."
         )
-    strict_json.check_keys(entry, ("method", "set", "name"), PlanError)
+    strict_json.check_keys(entry, ("method", "set", "inputs", "name"), PlanError)
     method = find_method(entry["method"])
     settings = entry.get("set", {})
     if not isinstance(settings, dict):
         raise PlanError(f"set: must be an object, got {strict_json.shorten(settings)}.")
-    changed = ", ".join(f"{name} {strict_json.shorten(value)}" for name, value in settings.items())
-    name = entry.get("name") or (f"{method.id} ({changed})" if changed else method.id)
-    return Variant(_text(name, "name"), method.id, method.params.from_json(settings))
+    inputs = further_of(entry.get("inputs", {}), method, folder)
+    changed = [f"{name} {strict_json.shorten(value)}" for name, value in settings.items()]
+    return Variant(_name(entry, method.id, changed, inputs), method.id, method.params.from_json(settings), inputs)
 
 
 def _of_preset(given: object, folder: Path, presets: PresetStore | None) -> Variant:
-    name = _text(given, "presets")
+    entry = {"preset": given} if isinstance(given, str) else given
+    if not isinstance(entry, dict) or "preset" not in entry:
+        raise PlanError(
+            'presets: must hold names or objects as in {"preset": "mixture/half", "inputs": {"second": "a.png"}}, '
+            f"got {strict_json.shorten(given)}."
+        )
+    strict_json.check_keys(entry, ("preset", "inputs", "name"), PlanError)
+    name = _text(entry["preset"], "presets")
     if name.lower().endswith(".json"):
         name = str(folder / name)
     preset = find_preset(name, PresetStore(folder / ".none") if presets is None else presets)
-    return Variant(f"{preset.method}/{preset.name}", preset.method, preset.params())
+    method = find_method(preset.method)
+    inputs = further_of(entry.get("inputs", {}), method, folder)
+    return Variant(
+        _name(entry, f"{preset.method}/{preset.name}", [], inputs), preset.method, preset.params(), inputs
+    )
+
+
+def _name(entry: dict[str, Any], what: str, changed: list[str], inputs: Further) -> str:
+    """Return how a variant is called: as the plan says, or after what it does."""
+    if entry.get("name"):
+        return _text(entry["name"], "name")
+    more = [*changed, *(f"{role} {each.name}" for role, each in inputs)]
+    return f"{what} ({', '.join(more)})" if more else what
 
 
 def _named_apart(variants: list[Variant]) -> tuple[Variant, ...]:

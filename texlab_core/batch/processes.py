@@ -60,16 +60,37 @@ class Processes:
             raise ParamError("processes", f"a whole number from 1 to {MAX_PROCESSES}", count)
         self.width = count
         self.scratch = scratch
+        self._crew: _Crew | None = None
+        self._keeps = False
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """Keep the processes from one run to the next; see :meth:`texlab_core.batch.places.Place.kept`."""
+        self._keeps = True
+        try:
+            yield
+        finally:
+            self._keeps = False
+            if self._crew is not None:
+                self._crew.end()
+                self._crew = None
 
     def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
         """Carry orders out; see :meth:`texlab_core.batch.places.Place.run`."""
-        folder = Path(tempfile.mkdtemp(prefix="texlab-batch-")) if self.scratch is None else self.scratch
-        crew = _Crew(self.width, _Drop(folder))
+        crew, whole = self._crew or self._begin(), False
+        self._crew = None
         try:
             yield from crew.outcomes(iter(orders), should_stop)
+            whole = True
         finally:
-            crew.end()
-            shutil.rmtree(folder, ignore_errors=True)
+            if whole and self._keeps:
+                self._crew = crew
+            else:
+                crew.end()
+
+    def _begin(self) -> _Crew:
+        folder = Path(tempfile.mkdtemp(prefix="texlab-batch-")) if self.scratch is None else self.scratch
+        return _Crew(self.width, _Drop(folder))
 
 
 class _Crew:
@@ -150,9 +171,10 @@ class _Crew:
             self._pool = None
 
     def end(self) -> None:
-        """Stop what runs, at its next step, and wait until every process has ended."""
+        """Stop what runs, at its next step, wait until every process has ended, and remove the inputs."""
         self._stop.set()
         self._renew()
+        shutil.rmtree(self._drop.folder, ignore_errors=True)
 
 
 class _Drop(Deposit):

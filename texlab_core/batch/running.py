@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.folder import BatchFolder
 from texlab_core.batch.forecast import Forecast
+from texlab_core.batch.further import load_further
 from texlab_core.batch.orders import Outcome, make_order
 from texlab_core.batch.parcels import Packer
 from texlab_core.batch.pictures import finish, thumbnail
@@ -25,12 +26,12 @@ from texlab_core.engine.sizes import size_text, size_to_json
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 
     from texlab_core.batch.choices import ExemplarChoice
     from texlab_core.batch.places import Loaded, ShouldStop
     from texlab_core.batch.plan import Plan, SizeRule, Variant
-    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.result import Result
 
 
@@ -162,6 +163,7 @@ class _Run:
         self.rows: dict[int, Row] = {}
         self.waiting: dict[str, tuple[int, str, dict[str, Any]]] = {}
         self.places: dict[str, int] = {}
+        self.further: dict[str, Mapping[str, Input] | InputError] = {}
         self.made = self.found = self.failed = self.repeated = 0
 
     def result(self, should_stop: ShouldStop | None) -> BatchResult:
@@ -218,9 +220,14 @@ class _Run:
             try:
                 size = rule.of(exemplar.size, find_method(variant.method).dimensions)
                 about["size"] = size_to_json(size)
+                further = self._further_of(variant)
+                if further:
+                    about["inputs"] = {
+                        role: {"name": each.name, "sha256": each.sha256} for role, each in further.items()
+                    }
                 job = Job(
                     method=variant.method,
-                    inputs={"exemplar": exemplar},
+                    inputs={**further, "exemplar": exemplar},
                     params=variant.params,
                     size=size,
                     seed=seed,
@@ -243,6 +250,19 @@ class _Run:
             stem = f"{name}-{variant.name}-{size_text(size, 'x')}-{seed}"
             self.waiting[order.key] = (place, stem, about)
             yield order, parcels
+
+    def _further_of(self, variant: Variant) -> Mapping[str, Input]:
+        """Return the further inputs of a variant, read when they are first needed; raises ``InputError``."""
+        found = self.further.get(variant.name)
+        if found is None:
+            try:
+                found = load_further(variant.inputs, find_method(variant.method))
+            except InputError as error:
+                found = error
+            self.further[variant.name] = found
+        if isinstance(found, InputError):
+            raise found
+        return found
 
     def _jobs_of(self, number: int) -> Iterator[tuple[int, Variant, int, SizeRule]]:
         place = number * (self.plan.count // len(self.plan.exemplars))
@@ -316,7 +336,7 @@ def run_jobs(
     place: Place | None = None,
     finish: Callable[[Result], Any] | None = None,
     should_stop: ShouldStop | None = None,
-) -> Iterator[tuple[int, Outcome]]:
+) -> Generator[tuple[int, Outcome], None, None]:
     """Run jobs anywhere, and yield the outcome of each with its number, in the order of finishing.
 
     Parameters
@@ -344,9 +364,10 @@ def run_jobs(
             order, parcels = make_order(job, make, packer)
             yield dataclasses.replace(order, key=f"{number}-{order.key}"), parcels
 
-    for outcome in (InProcess() if place is None else place).run(orders(), should_stop):
-        number, _, key = outcome.key.partition("-")
-        yield int(number), dataclasses.replace(outcome, key=key)
+    with contextlib.closing((InProcess() if place is None else place).run(orders(), should_stop)) as outcomes:
+        for outcome in outcomes:
+            number, _, key = outcome.key.partition("-")
+            yield int(number), dataclasses.replace(outcome, key=key)
 
 
 def without_evidence(result: Result) -> Result:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import dataclasses
 import inspect
 import json
@@ -354,5 +355,13 @@ def _reject_unknown(params: type[Params], names: Mapping[str, object]) -> None:
 
 
 def frozen_mapping(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a read-only copy of a mapping."""
+    """Return a read-only copy of a mapping, which can be pickled."""
     return MappingProxyType(dict(data))
+
+
+def _pickled(frozen: MappingProxyType[str, Any]) -> tuple[Any, ...]:
+    return frozen_mapping, (dict(frozen),)
+
+
+# Results travel between processes.
+copyreg.pickle(MappingProxyType, _pickled)

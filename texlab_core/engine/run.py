@@ -68,11 +68,7 @@ def run(
     method = find_method(job.method)
     start = time.perf_counter()
     with use_workers(threads):
-        model = cache.get(job.analysis_key) if cache is not None else None
-        if model is None:
-            model = _drive(method.analyze(job.inputs, job.params), "analysis", on_step, should_stop)
-            if cache is not None:
-                cache.put(job.analysis_key, model)
+        model = model_of(job, on_step, should_stop, cache=cache)
         steps = method.synthesize(model, job.inputs, job.params, job.size, Streams(job.seed))
         output: Output = _drive(steps, "synthesis", on_step, should_stop)
     return Result(
@@ -88,6 +84,23 @@ def run(
         elapsed_s=time.perf_counter() - start,
         versions=versions_for(method),
     )
+
+
+def model_of(
+    job: Job,
+    on_step: Callable[[Step], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+    *,
+    cache: AnalysisCache | None = None,
+) -> Any:
+    """Return the analysis of a job, found in a cache or made and kept there; otherwise like :func:`run`."""
+    model = cache.get(job.analysis_key) if cache is not None else None
+    if model is None:
+        method = find_method(job.method)
+        model = _drive(method.analyze(job.inputs, job.params), "analysis", on_step, should_stop)
+        if cache is not None:
+            cache.put(job.analysis_key, model)
+    return model
 
 
 def _drive(

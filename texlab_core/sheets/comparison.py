@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from texlab_core.engine.job import MAX_SEED, Job, check_seed
 from texlab_core.engine.registry import find_method, methods
 from texlab_core.engine.run import run
-from texlab_core.errors import Cancelled, InputError
+from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.measures.registry import measure_all, written
 from texlab_core.measures.subject import PreparedCache, Subject
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, contact_sheet, series_columns
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.engine.steps import Step
@@ -82,6 +82,7 @@ def plan(
     seed: int = 0,
     same_phase: bool = False,
     params: Mapping[str, Params] | None = None,
+    inputs: Mapping[str, Input] | None = None,
 ) -> tuple[Job, ...]:
     """Return one job for each method, all checked.
 
@@ -92,7 +93,8 @@ def plan(
     names
         Ids of methods; one may come more than once.
     size
-        Height and width of the results; None takes the exemplar's.
+        Height and width of the results, and a solid is as deep as its shorter side; None takes the exemplar's, and
+        for a solid a cube.
     seed
         Of the first method.
     same_phase
@@ -100,25 +102,38 @@ def plan(
         next seed.
     params
         Parameters by method; those left out take their defaults.
+    inputs
+        Further inputs by name; every method takes those that it knows.
 
     Raises
     ------
     InputError
-        When there is no method, one is unknown, or a job cannot work.
+        When there is no method, one is unknown, none takes an input, or a job cannot work.
     """
     if not names:
         raise InputError(f"methods: must name at least one of {', '.join(methods())}.")
     first = check_seed(seed)
+    known = {name: {spec.name for spec in find_method(name).inputs} for name in names}
+    for role in inputs or {}:
+        if role == "exemplar" or not any(role in roles for roles in known.values()):
+            others = sorted(set().union(*known.values()) - {"exemplar"})
+            allowed = f"a further input of a compared method ({', '.join(others) or 'they take none'})"
+            raise ParamError("input", allowed, role)
     return tuple(
         Job(
             method=name,
-            inputs={"exemplar": exemplar},
+            inputs={role: each for role, each in (inputs or {}).items() if role in known[name]}
+            | {"exemplar": exemplar},
             params=(params or {}).get(name),  # type: ignore[arg-type]  # None takes the defaults
-            size=exemplar.size if size is None else size,
+            size=_size_for(name, size),  # type: ignore[arg-type]  # None takes the default
             seed=first if same_phase else (first + index) % (MAX_SEED + 1),
         )
         for index, name in enumerate(names)
     )
+
+
+def _size_for(name: str, size: tuple[int, int] | None) -> tuple[int, ...] | None:
+    return size if size is None or find_method(name).dimensions == 2 else (min(size), *size)
 
 
 def compare(

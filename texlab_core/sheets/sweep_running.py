@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import logging
 import os
 import queue
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache as memoize
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -16,14 +18,15 @@ import numpy as np
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
-from texlab_core.measures.registry import measure_quick
+from texlab_core.measures.registry import measure_all, measure_quick
 from texlab_core.measures.subject import PreparedCache, Subject
 from texlab_core.sheets.sweep import Cell
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Generator, Iterable, Mapping
 
     from texlab_core.engine.job import Job
+    from texlab_core.engine.result import Result
     from texlab_core.engine.steps import Step
 
 _POLL_S = 0.01
@@ -56,6 +59,95 @@ class Places(Protocol):
     def wake(self) -> None:
         """Make everyone who waits ask ``should_stop`` again."""
         ...
+
+
+class Outcome(Protocol):
+    """What became of a job elsewhere."""
+
+    @property
+    def value(self) -> Any:
+        """What ``finish`` made of the result; None when it failed."""
+        ...
+
+    @property
+    def error(self) -> str:
+        """Why it failed, one sentence; empty when it did not."""
+        ...
+
+
+class Elsewhere(Protocol):
+    """Runs jobs in other processes; :func:`texlab_core.batch.running.run_jobs` at a place is one."""
+
+    def __call__(
+        self,
+        jobs: Iterable[Job],
+        *,
+        finish: Callable[[Result], Any],
+        should_stop: Callable[[], bool] | None,
+    ) -> Generator[tuple[int, Outcome], None, None]:
+        """Yield what became of each job, with its number, in the order of finishing."""
+        ...
+
+
+def run_sweep_elsewhere(
+    sweep: Grid,
+    on_cell: Callable[[Cell], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+    *,
+    elsewhere: Elsewhere,
+    on_progress: Callable[[float], None] | None = None,
+    ids: tuple[str, ...] | None = None,
+) -> tuple[Cell, ...]:
+    """Run every cell in other processes or on a cluster; bits and cells are those of :func:`run_sweep`.
+
+    Parameters
+    ----------
+    sweep, on_cell, should_stop, on_progress
+        As in :func:`run_sweep`; progress counts whole cells.
+    elsewhere
+        Runs the jobs.
+    ids
+        Of the measures that are taken of each result, where it is made; the quick ones when None.
+
+    Raises
+    ------
+    Cancelled
+        When ``should_stop`` said so.
+    """
+    cells: dict[int, Cell] = {}
+    finish = partial(_measured, ids=ids)
+    with contextlib.closing(elsewhere(iter(sweep.jobs), finish=finish, should_stop=should_stop)) as outcomes:
+        for index, outcome in outcomes:
+            make = partial(Cell, index=index, job=sweep.jobs[index], values=sweep.values(index))
+            if outcome.error:
+                cell = make(error=outcome.error)
+            else:
+                light, numbers = outcome.value
+                cell = make(result=dataclasses.replace(light, job=sweep.jobs[index]), measures=numbers)
+            cells[index] = cell
+            if on_progress is not None:
+                on_progress(len(cells) / len(sweep.jobs))
+            if on_cell is not None:
+                on_cell(cell)
+    return tuple(cells[index] for index in sorted(cells))
+
+
+def _measured(result: Result, *, ids: tuple[str, ...] | None) -> tuple[Result, dict[str, float]]:
+    """Return a result as it travels, and the numbers about it."""
+    subject = Subject.of_result(result, _prepared())
+    numbers = measure_quick(subject) if ids is None else measure_all(subject, ids)
+    # The job stays where it was made: its inputs are large.
+    return dataclasses.replace(_light(result), job=None), numbers  # type: ignore[arg-type]
+
+
+@memoize
+def _prepared() -> PreparedCache:
+    """Return what this process has prepared of the last exemplars for measuring."""
+    return PreparedCache()
+
+
+def _light(result: Result) -> Result:
+    return dataclasses.replace(result, volume=None, model=None, maps={}, details=None)
 
 
 def run_sweep(
@@ -206,8 +298,7 @@ class _State:
         finally:
             turn.give_back()
         found = self.measure(Subject.of_result(result, self.prepared, self.stop.is_set))
-        light = dataclasses.replace(result, volume=None, model=None, maps={}, details=None)
-        return {"result": light, "measures": found}
+        return {"result": _light(result), "measures": found}
 
     def _lock_of(self, job: Job) -> threading.Lock:
         with self._guard:

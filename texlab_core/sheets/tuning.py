@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import MAX_SEED, Job
 from texlab_core.engine.params import frozen_mapping
+from texlab_core.engine.run import model_of
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import InputError, ParamError
 from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.subject import PreparedCache
-from texlab_core.sheets.sweep_running import run_sweep
+from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
 from texlab_core.sheets.tuning_search import Measured, knob_rounds
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from texlab_core.documents.presets import Preset
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
-    from texlab_core.sheets.sweep_running import Places
+    from texlab_core.sheets.sweep_running import Elsewhere, Places
     from texlab_core.sheets.tuning_search import Rounds
 
 KEPT = "discriminability"
@@ -284,6 +285,7 @@ def tune(
     prepared: PreparedCache | None = None,
     workers: int | None = None,
     places: Places | None = None,
+    elsewhere: Elsewhere | None = None,
 ) -> Tuning:
     """Look for the parameters with the largest V whose D is no larger than a limit.
 
@@ -309,6 +311,8 @@ def tune(
         Where analyses, and the exemplar's part of the measures, are kept and found.
     workers, places
         As in :func:`texlab_core.sheets.sweep_running.run_sweep`. The result does not depend on them.
+    elsewhere
+        Runs the trials in other processes or on a cluster, round by round; None runs them in threads of this one.
 
     Returns
     -------
@@ -327,18 +331,22 @@ def tune(
     if limit != "start" and (not isinstance(limit, int | float) or not math.isfinite(limit)):
         raise ParamError("limit", "a number, or start for that of the parameters it begins with", limit)
     cache = AnalysisCache() if cache is None else cache
-    run = partial(
-        run_sweep,
-        should_stop=should_stop,
-        cache=cache,
-        prepared=PreparedCache() if prepared is None else prepared,
-        measure=partial(measure_all, ids=(KEPT, GAINED)),
-        workers=workers,
-        places=places,
-    )
+    run: Callable[..., tuple[Cell, ...]]
+    if elsewhere is None:
+        run = partial(
+            run_sweep,
+            should_stop=should_stop,
+            cache=cache,
+            prepared=PreparedCache() if prepared is None else prepared,
+            measure=partial(measure_all, ids=(KEPT, GAINED)),
+            workers=workers,
+            places=places,
+        )
+    else:
+        run = partial(run_sweep_elsewhere, should_stop=should_stop, elsewhere=elsewhere, ids=(KEPT, GAINED))
     search = _Search(base, budget, on_trial, on_progress, run)
     # Checked before anything runs.
-    rounds = _rounds(base, knobs, cache)
+    rounds = _rounds(base, knobs, cache, should_stop)
     seeds = _seeds(base)
     start = search.means("start", [base.params], seeds[:SEARCH_SEEDS], 0)[0]
     if not start.usable:
@@ -369,7 +377,9 @@ def _seeds(base: Job) -> list[int]:
     return [base.seed, *(int(each) + (each >= base.seed) for each in drawn)]
 
 
-def _rounds(base: Job, knobs: Sequence[str], cache: AnalysisCache) -> Callable[[Measured, float], Rounds]:
+def _rounds(
+    base: Job, knobs: Sequence[str], cache: AnalysisCache, should_stop: Callable[[], bool] | None
+) -> Callable[[Measured, float], Rounds]:
     from texlab_core.engine.params import describe
     from texlab_core.engine.registry import find_method
     from texlab_core.methods.de_bonet.method import DeBonetParams
@@ -391,9 +401,9 @@ def _rounds(base: Job, knobs: Sequence[str], cache: AnalysisCache) -> Callable[[
     if issubclass(method.params, DeBonetParams):
 
         def shape_of(params: Params) -> tuple[int, tuple[str, ...]]:
-            # Every trial's analysis was kept when it ran; one that was dropped since has no rows to vary.
-            model = cache.get(dataclasses.replace(base, params=params).analysis_key)
-            return (0, ()) if model is None else (model.depth, tuple(model.feature_names))
+            # Kept since the trial ran, unless it was dropped, or ran elsewhere.
+            model = model_of(dataclasses.replace(base, params=params), None, should_stop, cache=cache)
+            return model.depth, tuple(model.feature_names)
 
         return lambda start, limit: threshold_rounds(start, shape_of, limit, streams)
     raise InputError(f"{method.title} has no thresholds: say which of its numbers are to be tuned (knobs).")

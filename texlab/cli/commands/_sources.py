@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from texlab.cli.commands._options import parse_crop, parse_number
@@ -195,43 +194,28 @@ def load_inputs(
 
 def load_others(others: Mapping[str, Source], method: Method) -> dict[str, Input]:
     """Return the further inputs of a method, each read as its kind wants it; raises ``InputError``."""
-    specs = {spec.name: spec for spec in method.inputs}
-    for name in others:
-        if name not in specs:
-            raise ParamError("input", f"one of {', '.join(specs)} for {method.title}", name)
-    readings = {name: replace(each.reading, background=specs[name].background) for name, each in others.items()}
-    return {name: load_input(Source(each.place, readings[name]), specs[name]) for name, each in others.items()}
+    from texlab_core.images.named_input import spec_of
+
+    specs = {name: spec_of(method, name) for name in others}
+    found = {}
+    for name, source in others.items():
+        # What is transparent in it is what the method says.
+        reading = replace(source.reading, background=specs[name].background)
+        found[name] = load_input(Source(source.place, reading), specs[name])
+    return found
 
 
 def load_input(source: Source, spec: InputSpec) -> Input:
-    """Return one input, read as its kind wants it; raises ``InputError``."""
-    if spec.kind == "image":
-        return source.reading.read(source.place)
-    if source.reading.scale != 1.0 or source.reading.crop is not None:
-        raise InputError(f"The input {spec.name} is no image: it can be neither scaled nor cropped.")
-    path = Path(source.place)
-    if spec.kind == "arrays":
-        return _load_arrays(path)
-    if spec.read is not None:
-        return spec.read(path)
-    from texlab_core.engine.inputs import DataInput
-    from texlab_core.files import strict_json
+    """Return one input, read as its kind wants it; raises ``InputError``, and ``Cancelled`` after Ctrl-C."""
+    from texlab_core.images.named_input import read_input
 
-    return DataInput(strict_json.load(path, what=f"the input {spec.name}"), path.name)
-
-
-def _load_arrays(path: Path) -> Input:
-    import zipfile
-
-    import numpy as np
-
-    from texlab_core.engine.inputs import ArraysInput
-    from texlab_core.files.regular import open_regular
-
-    try:
-        with open_regular(path) as file, np.load(file, allow_pickle=False) as held:
-            return ArraysInput({name: held[name] for name in held.files}, path.name)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be opened ({error.strerror or error}).") from error
-    except (AttributeError, TypeError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: is no .npz file of arrays.") from error
+    reading = source.reading
+    return read_input(
+        source.place,
+        spec,
+        scale=reading.scale,
+        crop=reading.crop,
+        alpha=reading.alpha,
+        background=reading.background,
+        should_stop=interrupted,
+    )

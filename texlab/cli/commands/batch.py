@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._options import add_json_option, output_folder, parse_number
+from texlab.cli.commands._places import add_place_options, parse_place, processes
 from texlab.cli.commands._progress import batch_bar, spoken
 from texlab.cli.terminal import complain, interrupted, logged_quietly
 
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     import argparse
 
     from texlab.cli.parser import Parser
-    from texlab_core.batch.places import Place
     from texlab_core.batch.plan import Plan
     from texlab_core.batch.running import BatchResult
 
@@ -26,6 +26,7 @@ a whole plan, as JSON or TOML; paths are relative to it, and one run gives input
 inputs   a file, a folder, a glob, gallery:NAME, gallery:* or a class as in gallery:structured; or an object:
          {"from": "in/*.jpg", "scale": 0.5, "crops": {"size": "128x128", "grid": "4x2"}}
 methods  ids, or {"method": "de-bonet", "set": {"alpha": 0.2}}; presets: names as in de-bonet/paper, or files
+         with further inputs: {"method": "mixture", "inputs": {"second": "wall.jpg"}}
 sizes    WxH, or a factor of the exemplar's sides as in 2x
 
 the folder holds pictures with their recipes, report.csv and index.html; run again, the batch goes on
@@ -37,9 +38,7 @@ def configure(parser: Parser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("plan", metavar="PLAN|gallery:NAME", help="a .json or .toml file, or gallery:de-bonet-800")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for pictures and report")
-    place = parser.add_mutually_exclusive_group()
-    place.add_argument("--processes", metavar="N", help="on this machine (default: one for each core)")
-    place.add_argument("--cluster", metavar="ADDRESS", help="Dask: tcp://HOST:PORT, or local:N to start one here")
+    add_place_options(parser, "on this machine (default: one for each core)")
     parser.add_argument("--sample", metavar="N", help="run only N jobs, spread evenly over the plan")
     add_json_option(parser)
 
@@ -51,7 +50,7 @@ def execute(args: argparse.Namespace) -> int:
     sample = None if args.sample is None else parse_number("sample", args.sample, int)
     if sample is not None and sample < 1:
         raise ParamError("sample", "a whole number from 1", sample)
-    place = _place(args)
+    place = parse_place(args) or processes(None)
 
     from texlab.cli.commands._options import own_presets
     from texlab_core.batch.plan import find_plan
@@ -68,19 +67,6 @@ def execute(args: argparse.Namespace) -> int:
     if result.failed:
         complain(f"{result.failed} of {len(result.rows)} jobs failed; {result.page} lists them.")
     return 2 if result.failed else 0
-
-
-def _place(args: argparse.Namespace) -> Place:
-    if args.cluster is not None:
-        from texlab_core.batch.cluster import Cluster
-
-        return Cluster(args.cluster)
-    from texlab_core.batch.places import InProcess
-    from texlab_core.batch.processes import Processes
-
-    count = None if args.processes is None else parse_number("processes", args.processes, int)
-    place = Processes(count)
-    return InProcess() if place.width == 1 else place
 
 
 def described(result: BatchResult) -> str:

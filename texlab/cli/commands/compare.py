@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
@@ -15,15 +16,23 @@ from texlab.cli.commands._options import (
     refuse_overwriting,
 )
 from texlab.cli.commands._progress import share_bar
-from texlab.cli.commands._sources import add_scale_options, parse_reading
+from texlab.cli.commands._sources import (
+    add_input_options,
+    add_scale_options,
+    load_others,
+    parse_inputs,
+    parse_reading,
+)
 from texlab.cli.terminal import interrupted
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from texlab.cli.commands._sources import Source
     from texlab.cli.parser import Parser
+    from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
     from texlab_core.sheets.comparison import Compared
 
@@ -35,6 +44,7 @@ NOTES = """
 without --methods:               heeger-bergen,de-bonet,msg,efros-leung
 --same-phase without --methods:  uncoded,msg,car,ac-h, with one random phase for all (the MSG paper's Fig. 8)
 a parameter of one method:       --set car.synthesis=recursion --set msg.bandwidths=paper
+a further input:                 --input second=wall.jpg, for every method that takes one of this name
 """
 
 
@@ -54,6 +64,7 @@ def configure(parser: Parser) -> None:
         "--set", action="append", default=[], metavar="METHOD.NAME=VALUE", help="set one parameter of one method"
     )
     add_scale_options(parser)
+    add_input_options(parser)
     add_figure_options(parser)
     add_json_option(parser)
 
@@ -67,10 +78,11 @@ def execute(args: argparse.Namespace) -> int:
     columns = None if args.columns is None else parse_number("columns", args.columns, int)
     if columns is not None and columns < 1:
         raise ParamError("columns", "a whole number from 1", columns)
-    reading = parse_reading(args)
+    reading, others = parse_reading(args), parse_inputs(args)
     out = output_file(args.out)
     look = parse_figure(args, columns)
-    refuse_overwriting(out, args.image)
+    for source in (args.image, *(each.place for each in others.values())):
+        refuse_overwriting(out, source)
 
     from texlab_core.files.whole import write_whole
     from texlab_core.images.formats.writing import encode_png
@@ -91,10 +103,12 @@ def execute(args: argparse.Namespace) -> int:
         names = [name.strip() for name in args.methods.split(",")]
     params = parse_params(args.set, names)
     exemplar = reading.read(args.image)
-    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase, params=params)
+    inputs = _inputs(others, names)
+    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=args.same_phase, params=params, inputs=inputs)
     cells = len(jobs) + 1
     if look is None:
-        check_sheet(cells, columns or series_columns(cells), jobs[0].picture_size)
+        largest = max((job.picture_size for job in jobs), key=math.prod)
+        check_sheet(cells, columns or series_columns(cells), largest)
     with share_bar(f"{len(jobs)} methods") as show:
         compared = compare(jobs, on_progress=show, should_stop=interrupted)
     if look is None:
@@ -133,6 +147,20 @@ def parse_params(texts: Sequence[str], names: Sequence[str]) -> dict[str, Params
             raise ParamError("set", f"a parameter of one of the compared methods ({', '.join(names)})", text)
         settings.setdefault(method, []).append(f"{name}={value}")
     return {method: find_method(method).params.parse(parse_settings(each)) for method, each in settings.items()}
+
+
+def _inputs(others: Mapping[str, Source], names: Sequence[str]) -> dict[str, Input]:
+    """Return the further inputs, each read as the first method that takes it wants it; raises ``InputError``."""
+    from texlab_core.engine.registry import find_method
+    from texlab_core.errors import ParamError
+
+    found: dict[str, Input] = {}
+    for role, source in others.items():
+        taking = [method for method in map(find_method, names) if role in {spec.name for spec in method.inputs}]
+        if role == "exemplar" or not taking:
+            raise ParamError("input", f"a further input of one of the compared methods ({', '.join(names)})", role)
+        found |= load_others({role: source}, taking[0])
+    return found
 
 
 def report(compared: Sequence[Compared], out: Path, *, as_json: bool) -> None:

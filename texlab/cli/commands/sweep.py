@@ -15,6 +15,7 @@ from texlab.cli.commands._options import (
     parse_settings,
     refuse_overwriting,
 )
+from texlab.cli.commands._places import add_place_options, elsewhere, parse_place
 from texlab.cli.commands._progress import share_bar
 from texlab.cli.commands._sources import (
     add_input_options,
@@ -66,6 +67,7 @@ def configure(parser: Parser) -> None:
     add_input_options(parser)
     add_figure_options(parser)
     parser.add_argument("--columns", metavar="N", help="pictures in a row of a series")
+    add_place_options(parser, "run the cells in so many processes (default: in threads of this one)")
     parser.add_argument("--cell", default="512", metavar="N", help="longest side shown, 64 to 512 (default 512)")
     add_json_option(parser)
 
@@ -75,7 +77,7 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import ParamError
     from texlab_core.sheets.contact_sheet import check_sheet
-    from texlab_core.sheets.sweep_running import run_sweep
+    from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
     from texlab_core.sheets.sweep_sheet import sheet_columns, write_sheet
 
     out = output_file(args.out)
@@ -86,7 +88,7 @@ def execute(args: argparse.Namespace) -> int:
     largest = parse_number("cell", args.cell, int)
     if not 64 <= largest <= 512:
         raise ParamError("cell", "a whole number from 64 to 512", largest)
-    others = parse_inputs(args)
+    place, others = parse_place(args), parse_inputs(args)
     recipe, exemplar = plan(args)
     sources = [args.image or (recipe.exemplar.name if recipe.exemplar else "")]
     sources += [each.place for each in others.values()] + [each.name for each in recipe.inputs.values()]
@@ -96,8 +98,15 @@ def execute(args: argparse.Namespace) -> int:
     across = sheet_columns(sweep, columns)
     if look is None:
         check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
-    with share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show, logged_quietly():
-        cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
+    with (
+        share_bar(f"{len(sweep.jobs)} x {sweep.base.method}") as show,
+        logged_quietly(),
+        elsewhere(place) as there,
+    ):
+        if there is None:
+            cells = run_sweep(sweep, on_progress=show, should_stop=interrupted)
+        else:
+            cells = run_sweep_elsewhere(sweep, on_progress=show, should_stop=interrupted, elsewhere=there)
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, columns=across, largest=largest, look=look)
     report(sweep, cells, str(out), as_json=args.json)
     return 0

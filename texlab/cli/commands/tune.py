@@ -13,6 +13,7 @@ from texlab.cli.commands._options import (
     parse_result_size,
     refuse_overwriting,
 )
+from texlab.cli.commands._places import add_place_options, elsewhere, parse_place
 from texlab.cli.commands._progress import share_bar
 from texlab.cli.commands._sources import (
     add_input_options,
@@ -67,6 +68,7 @@ def configure(parser: Parser) -> None:
     add_parameter_options(parser, "begin with these parameters")
     add_scale_options(parser)
     add_input_options(parser)
+    add_place_options(parser, "run the trials in so many processes (default: in threads of this one)")
     parser.add_argument("--json", action="store_true", help="print one JSON object: all that was tried")
 
 
@@ -91,7 +93,7 @@ def execute(args: argparse.Namespace) -> int:
     out, name = output_file(args.out), check_name(args.name)
     if out.suffix.lower() != ".json":
         raise ParamError("out", "a file that ends in .json", args.out)
-    reading, others = parse_reading(args), parse_inputs(args)
+    place, reading, others = parse_place(args), parse_reading(args), parse_inputs(args)
     for source in (args.image, *(each.place for each in others.values())):
         refuse_overwriting(out, source)
     job = Job(
@@ -107,8 +109,16 @@ def execute(args: argparse.Namespace) -> int:
         if KEPT not in own:
             raise InputError("The exemplar's own D is not known: that takes a --crop of a picture twice as large.")
         limit = own[KEPT]
-    with share_bar(f"tuning {method.id}") as show, logged_quietly():
-        found = tune(job, knobs, limit=limit, budget=budget, on_progress=show, should_stop=interrupted)
+    with share_bar(f"tuning {method.id}") as show, logged_quietly(), elsewhere(place) as there:
+        found = tune(
+            job,
+            knobs,
+            limit=limit,
+            budget=budget,
+            on_progress=show,
+            should_stop=interrupted,
+            elsewhere=there,
+        )
     write_preset(found.preset(name), out)
     if args.json:
         print(json.dumps(found.to_json() | {"out": str(out)}, allow_nan=False))
