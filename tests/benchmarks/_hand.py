@@ -83,7 +83,7 @@ class Watch:
         pane.paintEvent = paint_event
 
 
-def open_window(columns: int) -> Any:
+def open_window(columns: int, *, solid: bool = False) -> Any:
     from texlab.app import start as app
     from texlab.storage.settings import Settings
     from texlab.style.theme import ThemeSource
@@ -96,7 +96,11 @@ def open_window(columns: int) -> Any:
     explorer = app.complete(window, settings, themes)
     settings.values["session"] = {"seed": 1, "size": [256, 256]}
     names = ["de-bonet", "heeger-bergen", "msg", "efros-leung"][:columns]
+    names = ["solid"] if solid else names
     explorer.start(None, columns=[(name, methods()[name].params()) for name in names])
+    if solid:
+        wait(lambda: bool(explorer.session.state.columns))
+        explorer.session.set_column_size(explorer.session.state.columns[0].id, (128, 128, 128))
     wait(lambda: explorer.idle)
     pause(0.5)
     return explorer
@@ -214,6 +218,54 @@ def explain(pointer: Pointer, explorer: Any) -> None:
     print(f"explain, after quick moves: {quantiles(times)}")
 
 
+def turn(pointer: Pointer, explorer: Any) -> None:
+    """Turn the object carved from a solid of 128 x 128 x 128 voxels, drawn at 400 x 400, in a floating tab."""
+    explorer.window.raise_dock("solids")
+    frame = explorer.window.docks["solids"]
+    dock = next(dock for dock in explorer.docks if dock.name == "solids")
+    frame.setFloating(True)
+    frame.setGeometry(20, 20, 1400, 960)
+    for beside in (False, True):
+        dock.beside.setChecked(beside)
+        wait(lambda: explorer.idle)
+        pause(0.5)
+        pane = dock.object
+        paint, painted, drawn = type(pane).paintEvent, [], []
+
+        def paint_event(event: Any) -> None:
+            paint(pane, event)
+            if pane.picture is not None and (not drawn or drawn[-1] is not pane.picture):
+                drawn.append(pane.picture)
+                painted.append(time.perf_counter())
+
+        pane.paintEvent = paint_event
+        middle = pane.mapToGlobal(pane.rect().center())
+        pointer.move(middle)
+        pause(0.2)
+        pointer.press(True)
+        pause(0.2)
+        waited, spent = [], time.process_time()
+        for step in range(EVENTS):
+            count, began = len(painted), time.perf_counter()
+            # To and fro, never the same place twice in a row.
+            pointer.move(middle + QPoint(step % 40 - 20, (3 * step) % 31 - 15))
+            wait(lambda count=count: len(painted) > count, 5)
+            waited.append(painted[-1] - began)
+        spent = (time.process_time() - spent) / EVENTS
+        side = pane.picture.shape[0]
+        sent, count = time.perf_counter(), len(painted)
+        for step in range(2 * EVENTS):
+            began = time.perf_counter()
+            pointer.move(middle + QPoint(step % 40 - 20, (3 * step) % 31 - 15))
+            pause(max(0.0, began + FRAME_S / 2 - time.perf_counter()))
+        rate = (len(painted) - count) / (time.perf_counter() - sent)
+        pointer.press(False)
+        pause(0.3)
+        what = "with the wrapped one beside" if beside else "alone"
+        print(f"object {what}, {side} x {side}, one event at a time: {quantiles(waited)}; CPU {1000 * spent:.1f} ms")
+        print(f"object {what}, 120 events a second: {rate:.0f} frames a second")
+
+
 def _handle(slider: Any) -> QPoint:
     from PySide6.QtWidgets import QStyle, QStyleOptionSlider
 
@@ -224,10 +276,10 @@ def _handle(slider: Any) -> QPoint:
 
 
 def main(what: str, columns: int) -> None:
-    explorer = open_window(columns)
+    explorer = open_window(columns, solid=what == "turn")
     pointer = Pointer()
     try:
-        {"slider": slider, "cell": cell, "explain": explain}[what](pointer, explorer)
+        {"slider": slider, "cell": cell, "explain": explain, "turn": turn}[what](pointer, explorer)
     finally:
         explorer.window.close()
         explorer.window.deleteLater()

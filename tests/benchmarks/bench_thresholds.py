@@ -1,4 +1,4 @@
-"""De Bonet under the hand: from a real mouse event to the repainted pane, and to the explained pixel.
+"""Under the hand: from a real mouse event to the repainted pane, the explained pixel, the turned solid.
 
 A window is opened under a virtual screen (Xvfb) in a process of its own, and the pointer is moved by the X server
 (XTest), so that the whole way is measured: X, Qt, session, worker, synthesis, scene, paint. Prints figures, judges
@@ -32,7 +32,7 @@ def display() -> Iterator[str]:
         pytest.skip("needs Xvfb and libXtst")
     reader, writer = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1920x1080x24", "-nolisten", "tcp"],
         pass_fds=(writer,),
         stderr=subprocess.DEVNULL,
     )
@@ -43,8 +43,9 @@ def display() -> Iterator[str]:
     server.wait()
 
 
-@pytest.mark.parametrize("what", ["slider", "cell", "explain"])
-@pytest.mark.parametrize("columns", [1, 4])
+@pytest.mark.parametrize(
+    ("what", "columns"), [*((what, count) for what in ("slider", "cell", "explain") for count in (1, 4)), ("turn", 1)]
+)
 def test_hand(display: str, tmp_path: Any, what: str, columns: int) -> None:
     environment = os.environ | {
         "DISPLAY": display,

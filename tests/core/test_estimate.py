@@ -46,5 +46,8 @@ def test_large_is_by_pixels_or_by_the_share_of_the_memory(monkeypatch: pytest.Mo
     assert not is_large(Estimate(None, 10**9), (4096, 4096))
     assert is_large(Estimate(None, 10**9), (4096, 4097))
     assert is_large(Estimate(None, 10**9 + 1), (8, 8))
+    assert not is_large(Estimate(60, 10**6), (8, 8))
+    assert is_large(Estimate(61, 10**6), (8, 8))
     assert in_words(Estimate(40.2, 69 * 10**8)) == "about 6.9 GB of memory and 40 s"
+    assert in_words(Estimate(151, 69 * 10**8)) == "about 6.9 GB of memory and 3 min"
     assert in_words(Estimate(None, 3 * 10**6)) == "about 3 MB of memory"

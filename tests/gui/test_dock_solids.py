@@ -20,6 +20,7 @@ from texlab.state.intentions import AskOnce, EditSize, Tell
 from texlab.state.scene import ColumnScene, Scene
 from texlab.style.theme import DARK
 from texlab_core.documents.reading import read_recipe
+from texlab_core.engine.estimate import estimate_of, in_words
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
@@ -107,6 +108,28 @@ def test_a_cross_hair_that_is_dragged_moves_the_other_slices(qtbot: Any, dock: S
     third = dock.panes["xz"]
     qtbot.mouseClick(third, LEFT, pos=third.place_of(9, 15))
     assert dock.place == (9, 8, 15)
+
+
+def test_what_a_solid_takes_is_said_before_it_is_made(
+    qtbot: Any, dock: SolidsDock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def words(side: int) -> str:
+        method = find_method("solid")
+        return in_words(estimate_of(method, {"exemplar": image_input(EXEMPLAR)}, method.params(), (10, 12, side)))
+
+    assert dock.needs.text() == f"needs {words(16)}"
+    intentions: list[Any] = []
+    dock.intention.connect(intentions.append)
+    box = dock.sides["width"]
+    box.lineEdit().selectAll()
+    qtbot.keyClicks(box.lineEdit(), "200")
+    assert dock.needs.text() == f"needs {words(200)}"
+    qtbot.keyClicks(box.lineEdit(), "x")
+    assert dock.needs.text() == ""
+    assert intentions == []
+    monkeypatch.setattr("texlab_core.engine.estimate.machine_bytes", lambda: 10**6)
+    qtbot.keyClick(box.lineEdit(), Qt.Key.Key_Backspace)
+    assert "of memory, and this machine has 0.0 GB" in dock.needs.text()
 
 
 def test_wheel_and_keys_go_through_the_slices(qtbot: Any, dock: SolidsDock) -> None:

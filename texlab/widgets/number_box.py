@@ -88,3 +88,10 @@ class WholeBox(QSpinBox):
     def fixup(self, text: str) -> str:
         """Leave what was typed: Qt would take a decimal comma out of it and make another number."""
         return text
+
+    @property
+    def typed(self) -> int | None:
+        """The number that stands in the box, taken or not yet; None while it is none, or out of range."""
+        text = self.lineEdit().text()
+        acceptable = self.validate(text, 0)[0] == QValidator.State.Acceptable
+        return self.valueFromText(text) if acceptable else None

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
 # What nobody has asked for by hand starts by itself up to here: 4096 x 4096.
 LARGE_SAMPLES = 2**24
-# Nor does what takes more than this share of the machine's memory.
+# Nor does what takes longer than a minute on one core, or more than this share of the machine's memory.
 LARGE_SHARE = 0.25
+LARGE_SECONDS = 60
 
 
 def estimate_of(method: Method, inputs: Inputs, params: Params, size: Sequence[int]) -> Estimate:
@@ -51,11 +52,16 @@ def check_memory(method: Method, estimate: Estimate, size: Sequence[int]) -> Non
 def is_large(estimate: Estimate, size: Sequence[int]) -> bool:
     """Return whether a run should not start before somebody has asked for it."""
     held = machine_bytes()
-    return math.prod(size) > LARGE_SAMPLES or (held is not None and estimate.nbytes > LARGE_SHARE * held)
+    if math.prod(size) > LARGE_SAMPLES or (estimate.seconds or 0) > LARGE_SECONDS:
+        return True
+    return held is not None and estimate.nbytes > LARGE_SHARE * held
 
 
 def in_words(estimate: Estimate) -> str:
     """Return what a run takes, as part of a sentence: "about 6.9 GB of memory and 40 s"."""
     memory = f"{estimate.nbytes / 1e9:.1f} GB" if estimate.nbytes >= 1e8 else f"{estimate.nbytes / 1e6:.0f} MB"
-    time = "" if estimate.seconds is None else f" and {max(1, round(estimate.seconds))} s"
-    return f"about {memory} of memory{time}"
+    seconds = estimate.seconds
+    if seconds is None:
+        return f"about {memory} of memory"
+    time = f"{max(1, round(seconds))} s" if seconds < 120 else f"{round(seconds / 60)} min"
+    return f"about {memory} of memory and {time}"

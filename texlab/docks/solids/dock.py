@@ -18,8 +18,9 @@ from texlab.docks.solids.panes import ObjectPane, SlicePane
 from texlab.state.intentions import AskOnce, EditSize, Tell
 from texlab.widgets.picture_area import CAPTION, PictureArea
 from texlab.widgets.plain import Label
+from texlab_core.engine.estimate import check_memory, estimate_of, in_words
 from texlab_core.engine.registry import find_method
-from texlab_core.errors import Cancelled
+from texlab_core.errors import Cancelled, InputError
 from texlab_core.solids.pictures import CUTS, Cut, Place, Turn, Walk, cross_of, middle, picture_of, slice_at
 from texlab_core.solids.rendering import SHAPES, View, render, render_wrapped
 from texlab_core.solids.shots import Shot, save_shot
@@ -87,6 +88,11 @@ class SolidsDock(FramedDock):
         }
         for box in self.sides.values():
             box.setKeyboardTracking(False)
+            # What is typed is foretold before it is taken.
+            box.lineEdit().textEdited.connect(lambda _: self._foretell())
+        self.needs = Label()
+        tip = "What a solid of these sides takes on one core: known before it is made"
+        self.add_control(self.needs, "needs", "Expected memory and time", tip)
         self.save_button = QPushButton("Save view ...")
         menu = QMenu(self.save_button)
         for what, (text, _, _) in SAVED.items():
@@ -123,6 +129,7 @@ class SolidsDock(FramedDock):
         self._column_id = 0
         self._result: Result | None = None
         self._filling = False
+        self._scene: Scene | None = None
         self.beside.setChecked(True)
         self.body.installEventFilter(self)
 
@@ -176,6 +183,28 @@ class SolidsDock(FramedDock):
                 if not self.sides[axis].hasFocus():
                     self.sides[axis].setValue(side)
             self._filling = False
+        self._scene = scene
+        self._foretell()
+
+    def _foretell(self) -> None:
+        """Say what a solid of the sides in the boxes, as they are typed, will take."""
+        scene, column = self._scene, None if self._scene is None else self._scene.selected
+        if scene is None or scene.exemplar is None or column is None:
+            self.needs.setText("")
+            return
+        method = find_method(column.method)
+        depth, height, width = (self.sides[each].typed for each in ("depth", "height", "width"))
+        if method.dimensions != 3 or depth is None or height is None or width is None:
+            self.needs.setText("")
+            return
+        inputs = {**dict(column.inputs), "exemplar": scene.exemplar}
+        expected = estimate_of(method, inputs, column.params, (depth, height, width))
+        try:
+            check_memory(method, expected, (depth, height, width))
+        except InputError as error:
+            self.needs.setText(str(error))
+            return
+        self.needs.setText(f"needs {in_words(expected)}")
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the pictures of the chosen column's solid; while a new one is made the last one stays."""
