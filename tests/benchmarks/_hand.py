@@ -229,41 +229,44 @@ def turn(pointer: Pointer, explorer: Any) -> None:
         dock.beside.setChecked(beside)
         wait(lambda: explorer.idle)
         pause(0.5)
-        pane = dock.object
-        paint, painted, drawn = type(pane).paintEvent, [], []
+        _turn_one(pointer, dock.object, "with the wrapped one beside" if beside else "alone")
 
-        def paint_event(event: Any) -> None:
-            paint(pane, event)
-            if pane.picture is not None and (not drawn or drawn[-1] is not pane.picture):
-                drawn.append(pane.picture)
-                painted.append(time.perf_counter())
 
-        pane.paintEvent = paint_event
-        middle = pane.mapToGlobal(pane.rect().center())
-        pointer.move(middle)
-        pause(0.2)
-        pointer.press(True)
-        pause(0.2)
-        waited, spent = [], time.process_time()
-        for step in range(EVENTS):
-            count, began = len(painted), time.perf_counter()
-            # To and fro, never the same place twice in a row.
-            pointer.move(middle + QPoint(step % 40 - 20, (3 * step) % 31 - 15))
-            wait(lambda count=count: len(painted) > count, 5)
-            waited.append(painted[-1] - began)
-        spent = (time.process_time() - spent) / EVENTS
-        side = pane.picture.shape[0]
-        sent, count = time.perf_counter(), len(painted)
-        for step in range(2 * EVENTS):
-            began = time.perf_counter()
-            pointer.move(middle + QPoint(step % 40 - 20, (3 * step) % 31 - 15))
-            pause(max(0.0, began + FRAME_S / 2 - time.perf_counter()))
-        rate = (len(painted) - count) / (time.perf_counter() - sent)
-        pointer.press(False)
-        pause(0.3)
-        what = "with the wrapped one beside" if beside else "alone"
-        print(f"object {what}, {side} x {side}, one event at a time: {quantiles(waited)}; CPU {1000 * spent:.1f} ms")
-        print(f"object {what}, 120 events a second: {rate:.0f} frames a second")
+def _turn_one(pointer: Pointer, pane: Any, what: str) -> None:
+    paint, painted, drawn = type(pane).paintEvent, [], []
+
+    def paint_event(event: Any) -> None:
+        paint(pane, event)
+        if pane.picture is not None and (not drawn or drawn[-1] is not pane.picture):
+            drawn.append(pane.picture)
+            painted.append(time.perf_counter())
+
+    pane.paintEvent = paint_event
+    middle = pane.mapToGlobal(pane.rect().center())
+    # To and fro, never the same place twice in a row.
+    places = [middle + QPoint(step % 40 - 20, (3 * step) % 31 - 15) for step in range(2 * EVENTS)]
+    pointer.move(middle)
+    pause(0.2)
+    pointer.press(True)
+    pause(0.2)
+    waited, spent = [], time.process_time()
+    for place in places[:EVENTS]:
+        count, began = len(painted), time.perf_counter()
+        pointer.move(place)
+        wait(lambda count=count: len(painted) > count, 5)
+        waited.append(painted[-1] - began)
+    spent = (time.process_time() - spent) / EVENTS
+    side, sent, count = pane.picture.shape[0], time.perf_counter(), len(painted)
+    for place in places:
+        began = time.perf_counter()
+        pointer.move(place)
+        pause(max(0.0, began + FRAME_S / 2 - time.perf_counter()))
+    rate = (len(painted) - count) / (time.perf_counter() - sent)
+    pointer.press(False)
+    pause(0.3)
+    print(f"object {what}, {side} x {side}, one event at a time: {quantiles(waited)};", end=" ")
+    print(f"{1000 * spent:.1f} ms of CPU each")
+    print(f"object {what}, 120 events a second: {rate:.0f} frames a second")
 
 
 def _handle(slider: Any) -> QPoint:

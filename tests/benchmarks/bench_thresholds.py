@@ -43,9 +43,10 @@ def display() -> Iterator[str]:
     server.wait()
 
 
-@pytest.mark.parametrize(
-    ("what", "columns"), [*((what, count) for what in ("slider", "cell", "explain") for count in (1, 4)), ("turn", 1)]
-)
+TRIED = [*((what, count) for what in ("slider", "cell", "explain") for count in (1, 4)), ("turn", 1)]
+
+
+@pytest.mark.parametrize(("what", "columns"), TRIED)
 def test_hand(display: str, tmp_path: Any, what: str, columns: int) -> None:
     environment = os.environ | {
         "DISPLAY": display,

@@ -20,10 +20,10 @@ from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.leftovers import is_leftover
 from texlab_core.files.regular import open_appending
-from texlab_core.files.whole import write_together, write_whole
+from texlab_core.files.whole import write_pieces, write_together, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from texlab_core.batch.pictures import Picture
 
@@ -116,6 +116,10 @@ class BatchFolder:
             return None
         return Record(key, data) if whole else None
 
+    def record(self, key: str) -> Record:
+        """Return the record of a job that was done a moment ago; raises ``InputError`` when it is gone."""
+        return Record(key, strict_json.load(self.path / RECORDS / f"{key}.json", what="the record of a job"))
+
     def keep(self, key: str, name: str, picture: Picture, about: Mapping[str, Any], elapsed_s: float) -> Record:
         """Write what a job made, the record last.
 
@@ -156,7 +160,9 @@ class BatchFolder:
                 self.path / data["picture"]: picture.png,
                 self.path / data["thumbnail"]: picture.thumbnail,
                 self.path / RECORDS / f"{key}.json": strict_json.dumps(data).encode(),
-            }
+            },
+            # Looked through once, at the start: there may be very many files.
+            clears=False,
         )
         if self._times is not None:
             self._times.write(f"{key},{elapsed_s:.3f}\r\n")
@@ -170,10 +176,10 @@ class BatchFolder:
             write_whole(self.path / name, thumbnail)
         return name if (self.path / name).is_file() else None
 
-    def write(self, name: str, text: str) -> Path:
-        """Write one of the batch's own files."""
+    def write(self, name: str, pieces: Iterable[str]) -> Path:
+        """Write one of the batch's own files, piece by piece."""
         path = self.path / name
-        write_whole(path, text.encode())
+        write_pieces(path, (piece.encode() for piece in pieces))
         return path
 
     def _remove_leftovers(self) -> None:

@@ -10,9 +10,9 @@ from texlab_core.findings.finding import HINT
 from texlab_core.measures.registry import measures as known_measures
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-    from texlab_core.batch.rows import Row
+    from texlab_core.batch.rows import Row, Rows
 
 _STYLE = """
 :root { color-scheme: light dark; --line: #8884; --dim: #8888; --bad: #c33; }
@@ -80,30 +80,29 @@ filter();
 """
 
 
-def page_of(name: str, note: str, rows: Sequence[Row], measures: Sequence[str], total: int) -> str:
-    """Return the page.
+def page_of(name: str, note: str, variants: Sequence[str], rows: Rows, total: int) -> Iterator[str]:
+    """Yield the page in pieces.
 
     Parameters
     ----------
     name, note
         Of the plan.
+    variants
+        The names of its methods.
     rows
         The jobs that are over.
-    measures
-        Names of the columns with numbers.
     total
         How many jobs there will be.
     """
-    failed = sum(bool(row.error) for row in rows)
+    failed, measures = rows.failed, rows.measures
     counts = [f"{len(rows) - failed} of {total} textures"] + ([f"{failed} failed"] if failed else [])
-    variants = list(dict.fromkeys(row.about["variant"] for row in rows))
     options = "".join(f"<option>{escape(each)}</option>" for each in variants)
     headers = ["<th>Exemplar</th>", "<th>Result</th>"]
     headers += [f"<th><button>{each}</button></th>" for each in ("Input", "Method", "Size")]
     headers.append('<th class="number"><button>Seed</button></th>')
     headers += [_heading(name) for name in measures]
     headers.append("<th><button>Findings</button></th>")
-    return f"""<!DOCTYPE html>
+    yield f"""<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -129,7 +128,10 @@ recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 <table>
 <thead><tr>{"".join(headers)}</tr></thead>
 <tbody>
-{"".join(_row(row, measures) for row in rows)}</tbody>
+"""
+    for row in rows:
+        yield _row(row, measures)
+    yield f"""</tbody>
 </table>
 <script>{_SCRIPT}</script>
 </body>

@@ -112,11 +112,24 @@ class Packer:
 
 
 class Unpacked:
-    """The inputs that were unpacked last, so that the jobs of one exemplar share it and its hash."""
+    """The inputs that were unpacked last, so that the jobs of one exemplar share it and its hash.
 
-    def __init__(self, capacity: int = 8) -> None:
+    Parameters
+    ----------
+    capacity
+        How many inputs are kept at most.
+    max_bytes
+        What they and the sources they were taken from may take together; the newest is kept whatever it takes.
+    """
+
+    def __init__(self, capacity: int = 8, max_bytes: int = 2**27) -> None:
         self._capacity = capacity
+        self._max_bytes = max_bytes
         self._inputs: OrderedDict[tuple[object, ...], Input] = OrderedDict()
+
+    def __len__(self) -> int:
+        """Return how many are kept."""
+        return len(self._inputs)
 
     def get(self, slip: Slip, parcels: Mapping[str, Parcel]) -> Input:
         """Return the input of a slip; raises ``InputError`` like :meth:`Slip.unpack`."""
@@ -124,9 +137,22 @@ class Unpacked:
         found = self._inputs.get(key)
         if found is None:
             found = self._inputs[key] = slip.unpack(parcels)
-            while len(self._inputs) > self._capacity:
+            while len(self._inputs) > 1 and (len(self._inputs) > self._capacity or self._nbytes > self._max_bytes):
                 self._inputs.popitem(last=False)
+        self._inputs.move_to_end(key)
         return found
+
+    @property
+    def _nbytes(self) -> int:
+        arrays: dict[int, NDArray[Any]] = {}
+        for each in self._inputs.values():
+            held: list[NDArray[Any]] = []
+            if isinstance(each, ImageInput):
+                held = [each.pixels] + ([] if each.origin is None else [each.origin.pixels])
+            elif isinstance(each, ArraysInput):
+                held = list(each.arrays.values())
+            arrays |= {id(array): array for array in held}
+        return sum(array.nbytes for array in arrays.values())
 
 
 class Deposit(ABC):

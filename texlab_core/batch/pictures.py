@@ -87,7 +87,7 @@ def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None =
 @functools.cache
 def _prepared() -> PreparedCache:
     """Return what this process has prepared of the last exemplars for measuring."""
-    return PreparedCache()
+    return PreparedCache(exemplars=2)
 
 
 def thumbnail(image: FloatImage, longest: int = THUMBNAIL) -> bytes:

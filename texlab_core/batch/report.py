@@ -8,14 +8,14 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.page import page_of
-from texlab_core.batch.rows import Row, measure_names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from texlab_core.batch.folder import BatchFolder
     from texlab_core.batch.plan import Plan
+    from texlab_core.batch.rows import Rows
 
 TABLE, PAGE = "report.csv", "index.html"
 _COLUMNS = (
@@ -33,12 +33,10 @@ _COLUMNS = (
 )
 
 
-def table_of(rows: Sequence[Row]) -> str:
-    """Return the rows as CSV."""
-    names = measure_names(rows)
-    out = io.StringIO()
-    writer = csv.writer(out)
-    writer.writerow([*_COLUMNS, *names, "findings", "error"])
+def table_of(rows: Rows) -> Iterator[str]:
+    """Yield the lines of the CSV table."""
+    names = rows.measures
+    yield _line([*_COLUMNS, *names, "findings", "error"])
     for row in rows:
         about = row.about
         size = about.get("size") or {"width": "", "height": ""}
@@ -48,7 +46,12 @@ def table_of(rows: Sequence[Row]) -> str:
         cells += [row.picture, row.job]
         cells += ["" if (value := (row.measures or {}).get(name)) is None else repr(value) for name in names]
         cells += [" ".join(row.findings), row.error]
-        writer.writerow([_harmless(cell) for cell in cells])
+        yield _line([_harmless(cell) for cell in cells])
+
+
+def _line(cells: Sequence[Any]) -> str:
+    out = io.StringIO()
+    csv.writer(out).writerow(cells)
     return out.getvalue()
 
 
@@ -57,20 +60,20 @@ def _harmless(cell: Any) -> Any:
     return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "@", "\t") else cell
 
 
-def write_report(folder: BatchFolder, plan: Plan, rows: Sequence[Row], total: int) -> tuple[Path, Path]:
-    """Write page and table; return their paths.
+def write_report(folder: BatchFolder, plan: Plan, rows: Rows, total: int) -> tuple[Path, Path]:
+    """Write page and table, line by line; return their paths.
 
     Parameters
     ----------
     folder
         Of the batch.
     plan
-        For its name and note.
+        For its name, note and methods.
     rows
         The jobs that are over.
     total
         How many there will be.
     """
     table = folder.write(TABLE, table_of(rows))
-    page = folder.write(PAGE, page_of(plan.name, plan.note, rows, measure_names(rows), total))
+    page = folder.write(PAGE, page_of(plan.name, plan.note, [each.name for each in plan.variants], rows, total))
     return page, table

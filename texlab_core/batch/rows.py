@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, overload
 
 from texlab_core.measures.registry import measures
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping
 
     from texlab_core.batch.folder import Record
 
@@ -77,8 +78,63 @@ class Row:
         return "x".join(str(side) for side in size.values()) if size else str(self.about["size_rule"])
 
 
-def measure_names(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return the names of all measures: in the registry's order, then what only methods know."""
-    found = {name for row in rows for name in row.measures or {}}
-    known = [name for name in measures() if name in found]
-    return (*known, *sorted(found - set(known)))
+class Rows(Sequence[Row]):
+    """The rows of a batch in the order of its plan; those of finished jobs are read when they are wanted.
+
+    So a batch takes no more memory for more jobs than their hashes.
+
+    Parameters
+    ----------
+    read
+        Returns the record of a job by its hash.
+    """
+
+    def __init__(self, read: Callable[[str], Record]) -> None:
+        self._read = read
+        self._kept: dict[int, bytes | Row] = {}
+        self._measures: set[str] = set()
+        self._failed = 0
+
+    def add(self, place: int, row: Row) -> None:
+        """Take the row of a job at its place in the plan."""
+        self._kept[place] = row if row.error else bytes.fromhex(row.job)
+        self._measures.update(row.measures or ())
+        self._failed += bool(row.error)
+
+    @property
+    def failures(self) -> tuple[Row, ...]:
+        """The rows of the jobs that failed."""
+        kept = (self._kept[place] for place in sorted(self._kept))
+        return tuple(each for each in kept if isinstance(each, Row))
+
+    @property
+    def failed(self) -> int:
+        """How many failed."""
+        return self._failed
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Ids of all measures: in the registry's order, then what only methods know."""
+        known = [name for name in measures() if name in self._measures]
+        return (*known, *sorted(self._measures - set(known)))
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def __iter__(self) -> Iterator[Row]:
+        return (self._row(place) for place in sorted(self._kept))
+
+    @overload
+    def __getitem__(self, index: int) -> Row: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Row, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Row | tuple[Row, ...]:
+        """Return one row, or several."""
+        places = sorted(self._kept)[index]
+        return self._row(places) if isinstance(places, int) else tuple(map(self._row, places))
+
+    def _row(self, place: int) -> Row:
+        kept = self._kept[place]
+        return kept if isinstance(kept, Row) else Row.of(self._read(kept.hex()))

@@ -19,7 +19,7 @@ from texlab_core.batch.pictures import finish, thumbnail
 from texlab_core.batch.places import InProcess, Place
 from texlab_core.batch.processes import Processes
 from texlab_core.batch.report import write_report
-from texlab_core.batch.rows import Row
+from texlab_core.batch.rows import Row, Rows
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_text, size_to_json
@@ -74,7 +74,7 @@ class BatchResult:
     repeated
         Jobs that the plan asks for more than once; they were made once.
     rows
-        One for each job, in the order of the plan.
+        One for each job, in the order of the plan; read from the folder when it is wanted.
     page, table
         The report's files.
     elapsed_s
@@ -85,7 +85,7 @@ class BatchResult:
     found: int
     failed: int
     repeated: int
-    rows: tuple[Row, ...]
+    rows: Rows
     page: str
     table: str
     elapsed_s: float
@@ -160,7 +160,7 @@ class _Run:
         self.on_progress = on_progress
         self.forecast = Forecast(self.total)
         # One row for each place in the plan; a job that is asked for twice has its first place.
-        self.rows: dict[int, Row] = {}
+        self.rows = Rows(folder.record)
         self.waiting: dict[str, tuple[int, str, dict[str, Any]]] = {}
         self.places: dict[str, int] = {}
         self.further: dict[str, Mapping[str, Input] | InputError] = {}
@@ -173,14 +173,13 @@ class _Run:
                 for outcome in outcomes:
                     self._keep(outcome)
         finally:
-            rows = tuple(self.rows[place] for place in sorted(self.rows))
-            page, table = write_report(self.folder, self.plan, rows, self.total - self.repeated)
+            page, table = write_report(self.folder, self.plan, self.rows, self.total - self.repeated)
         return BatchResult(
             made=self.made,
             found=self.found,
             failed=self.failed,
             repeated=self.repeated,
-            rows=rows,
+            rows=self.rows,
             page=str(page),
             table=str(table),
             elapsed_s=time.monotonic() - start,
@@ -289,7 +288,7 @@ class _Run:
         for place, variant, seed, size in jobs:
             self.failed += 1
             self.forecast.drop()
-            self.rows[place] = Row.failed(_about(choice, variant, seed, size.text, None), error)
+            self.rows.add(place, Row.failed(_about(choice, variant, seed, size.text, None), error))
         part = f" ({choice.part})" if choice.part else ""
         said = error if error.startswith(choice.name) else f"{choice.name}{part}: {error}"
         self._tell(f"{said} {len(jobs)} jobs need it." if len(jobs) > 1 else said)
@@ -302,7 +301,7 @@ class _Run:
         self._settle(place, row, f"{row.title}: {error}")
 
     def _settle(self, place: int, row: Row, error: str = "") -> None:
-        self.rows[place] = row
+        self.rows.add(place, row)
         self._tell(error)
 
     def _tell(self, error: str) -> None:

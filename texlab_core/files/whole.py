@@ -14,7 +14,7 @@ from texlab_core.files.leftovers import release, reserve, sweep
 from texlab_core.files.regular import reason
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 
@@ -30,7 +30,31 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     write_together({Path(path): data})
 
 
-def write_together(contents: Mapping[Path, bytes], *, manifest: tuple[Path, bytes] | None = None) -> None:
+def write_pieces(path: str | os.PathLike[str], pieces: Iterable[bytes]) -> None:
+    """Write a file like :func:`write_whole`, from pieces that are made as they are written.
+
+    Raises
+    ------
+    InputError
+        When it cannot be written; what was there before stays as it was.
+    """
+    temporary: Path | None = None
+    try:
+        target = _target(Path(path))
+        sweep(target.parent)
+        temporary = reserve(target.parent)
+        _stage(temporary, target, pieces)
+        _commit([(temporary, target)])
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be written ({reason(error)}).") from error
+    finally:
+        if temporary is not None:
+            release(temporary)
+
+
+def write_together(
+    contents: Mapping[Path, bytes], *, manifest: tuple[Path, bytes] | None = None, clears: bool = True
+) -> None:
     """Write files that belong together; none is renamed before all of them are on the disk.
 
     A file that is there already keeps its permissions. What dead processes have left in the folders is cleared.
@@ -42,6 +66,8 @@ def write_together(contents: Mapping[Path, bytes], *, manifest: tuple[Path, byte
     manifest
         The one among them that names the others, and what it holds while they are replaced. It is replaced first
         and last: whenever the program ends, and be it by force, the files that it names are those of one set.
+    clears
+        False where the caller has cleared the folders, which takes as long as they have files.
 
     Raises
     ------
@@ -58,17 +84,17 @@ def write_together(contents: Mapping[Path, bytes], *, manifest: tuple[Path, byte
             if target in targets:
                 raise OSError(errno.EEXIST, "two files would be written under this name")
             targets[target] = data
-        for folder in {target.parent for target in targets}:
+        for folder in {target.parent for target in targets} if clears else ():
             sweep(folder)
         for target, data in targets.items():
             name = str(target)
             staged.append((reserve(target.parent), target))
-            _stage(*staged[-1], data)
+            _stage(*staged[-1], (data,))
         if manifest is not None:
             name, last = str(manifest[0]), _target(manifest[0])
             staged.sort(key=lambda pair: pair[1] == last)
             staged.insert(0, (reserve(last.parent), last))
-            _stage(*staged[0], manifest[1])
+            _stage(*staged[0], (manifest[1],))
         name = ", ".join(str(target) for _, target in staged)
         _commit(staged)
     except (OSError, ValueError) as error:
@@ -124,12 +150,13 @@ def _target(path: Path) -> Path:
     return target
 
 
-def _stage(temporary: Path, target: Path, data: bytes) -> None:
+def _stage(temporary: Path, target: Path, pieces: Iterable[bytes]) -> None:
     descriptor = os.open(temporary, _NEW, 0o666)
     try:
-        rest = memoryview(data)
-        while rest:
-            rest = rest[os.write(descriptor, rest) :]
+        for piece in pieces:
+            rest = memoryview(piece)
+            while rest:
+                rest = rest[os.write(descriptor, rest) :]
         os.fsync(descriptor)
     finally:
         os.close(descriptor)

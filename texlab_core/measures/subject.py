@@ -33,12 +33,15 @@ class PreparedCache:
     ----------
     max_bytes
         How much the kept arrays may take together.
+    exemplars
+        How many exemplars something is kept of; None for no limit.
 
     Any number of threads may use it; two that miss the same thing at once both compute it.
     """
 
-    def __init__(self, max_bytes: int = 64 * 2**20) -> None:
+    def __init__(self, max_bytes: int = 64 * 2**20, exemplars: int | None = None) -> None:
         self._max_bytes = max_bytes
+        self._exemplars = exemplars
         self._kept: OrderedDict[tuple[str, str], tuple[Any, int]] = OrderedDict()
         self._lock = threading.Lock()
 
@@ -55,6 +58,10 @@ class PreparedCache:
             self._kept[key] = value, array_bytes(value) + 256
             while len(self._kept) > 1 and self.nbytes > self._max_bytes:
                 self._kept.popitem(last=False)
+            # From the newest: a hash that comes later than so many others is of an exemplar that is done with.
+            recent = list(dict.fromkeys(sha256 for _, sha256 in reversed(self._kept)))[: self._exemplars]
+            for each in [each for each in self._kept if each[1] not in recent]:
+                del self._kept[each]
         return value
 
     @property

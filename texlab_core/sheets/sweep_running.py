@@ -143,7 +143,7 @@ def _measured(result: Result, *, ids: tuple[str, ...] | None) -> tuple[Result, d
 @memoize
 def _prepared() -> PreparedCache:
     """Return what this process has prepared of the last exemplars for measuring."""
-    return PreparedCache()
+    return PreparedCache(exemplars=2)
 
 
 def _light(result: Result) -> Result:

@@ -88,5 +88,5 @@ def as_json(plan: Plan, result: BatchResult) -> dict[str, Any]:
         "elapsed_s": result.elapsed_s,
         "page": result.page,
         "table": result.table,
-        "failures": [{"job": row.title, "error": row.error} for row in result.rows if row.error],
+        "failures": [{"job": row.title, "error": row.error} for row in result.rows.failures],
     }
