@@ -249,7 +249,7 @@ ALLOWED = {
     ("texlab/cli/piping.py", "out.read_bytes"),
     # Is given a descriptor that a reader has opened.
     ("texlab/storage/arrays.py", "np.load"),
-    ("texlab/cli/commands/_sources.py", "np.load"),
+    ("texlab_core/images/named_input.py", "np.load"),
     # A lock, which is neither read nor written, and what its own processes pass on to each other.
     ("texlab_core/batch/folder.py", "os.open"),
     ("texlab_core/batch/processes.py", "open"),
