@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench bar calibrate wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench soak bar calibrate wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -23,6 +23,10 @@ fmt: .venv/.ready-test
 
 bench: .venv/.ready-bench
 	@$(PY) -m pytest tests/benchmarks -q -s --no-xvfb -m benchmark -o python_files='bench_*.py'
+
+# Ten thousand random events in the window: what grows, what is left, what goes wrong; EVENTS=, SEED=.
+soak: .venv/.ready-test
+	@$(PY) -m tests.soak --events $(or $(EVENTS),10000) --seed $(or $(SEED),1)
 
 # De Bonet's defaults against what they have to reach; writes the table of the help page.
 bar: .venv/.ready-run

@@ -20,6 +20,7 @@ from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.kernels.jit import stoppable_compiling
 from texlab_core.stats import histogram
 
 if TYPE_CHECKING:
@@ -55,18 +56,19 @@ def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
     Raises
     ------
     Cancelled
-        When ``should_stop`` said so, between two steps of a run.
+        When ``should_stop`` said so, between two steps of a run or two passes of the compiler.
     """
     method = find_method(need.method)
     exemplar = as_exemplar(Streams(0)("warm up").random((*SIDES, need.channels), np.float32))
     inputs: dict[str, Input] = {EXEMPLAR.name: exemplar}
     inputs |= {spec.name: exemplar for spec in method.inputs if spec.required and spec.kind == "image"}
     size = (*(DEPTH,) * (method.dimensions - 2), *OUTPUT)
-    for params in (method.params(), *method.rehearsals):
-        job = Job(method=method.id, inputs=inputs, params=params, size=size)
-        run(job, should_stop=should_stop, threads=1)
-    # Large planes are sorted in pieces, by kernels that no tiny run needs.
-    histogram.warm_up()
+    with stoppable_compiling(should_stop):
+        for params in (method.params(), *method.rehearsals):
+            job = Job(method=method.id, inputs=inputs, params=params, size=size)
+            run(job, should_stop=should_stop, threads=1)
+        # Large planes are sorted in pieces, by kernels that no tiny run needs.
+        histogram.warm_up()
 
 
 def warm_up(should_stop: Callable[[], bool] | None = None) -> tuple[Need, ...]:

@@ -7,6 +7,7 @@ import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
 
 from tests.stub_method import stub  # noqa: F401
@@ -15,6 +16,7 @@ from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.kernels import ranks
+from texlab_core.kernels.jit import stoppable_compiling
 from texlab_core.warming import Need, Warmth, every_need, load, warm_up
 
 PATIENCE_S = 60.0
@@ -54,6 +56,7 @@ from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.engine.params import describe
 from texlab_core.kernels import ranks
+from texlab_core.kernels.jit import stoppable_compiling
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.engine.job import Job
@@ -257,3 +260,53 @@ def test_kernels_that_only_large_planes_need_are_loaded_too(monkeypatch):
         )
     load(Need("heeger-bergen", 1))
     assert called == set(names)
+
+
+def test_compiling_stops_between_two_passes():
+    import numba
+    from numba.core import event
+
+    @numba.njit
+    def inner(value):
+        return value + 1
+
+    @numba.njit
+    def kernel(values):
+        total = 0.0
+        for value in values:
+            total += inner(value)
+        return total
+
+    passes = []
+
+    class Counting(event.Listener):
+        def on_start(self, event):
+            passes.append(event.data["name"])
+
+        def on_end(self, event):
+            pass
+
+    asked = []
+
+    def after_some():
+        asked.append(None)
+        return len(asked) > 5
+
+    numbers = np.arange(4.0)
+    with event.install_listener("numba:run_pass", Counting()):
+        with pytest.raises(Cancelled), stoppable_compiling(after_some):
+            kernel(numbers)
+        stopped = len(passes)
+        assert stopped <= 6
+        # Outside nobody is asked, and what was begun is compiled from the start.
+        assert kernel(numbers) == 10.0
+    assert len(passes) > stopped + 6
+    assert len(asked) == 6
+
+
+def test_another_thread_compiles_on():
+    import numba
+
+    kernel = numba.njit(lambda value: value * 2)
+    with ThreadPoolExecutor() as threads, stoppable_compiling(lambda: True):
+        assert threads.submit(kernel, 3).result(PATIENCE_S) == 6

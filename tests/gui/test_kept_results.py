@@ -47,6 +47,15 @@ def test_results_are_found_by_their_job_and_the_oldest_goes_first() -> None:
     assert kept.nbytes == 0
 
 
+def test_no_more_than_so_many_are_kept() -> None:
+    kept = KeptResults(most=2)
+    for seed in range(4):
+        kept.put(seed, finished(seed))
+    assert len(kept) == 2
+    assert kept.get(1) is None
+    assert kept.get(2) is not None
+
+
 def test_the_newest_is_kept_whatever_it_takes() -> None:
     kept = KeptResults(max_bytes=0)
     end = finished()

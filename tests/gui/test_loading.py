@@ -10,6 +10,7 @@ import pytest
 
 from tests.gui.conftest import PATIENCE_MS, hb, ids, wait_idle
 from tests.stub_method import StubParams
+from texlab.app.start import await_threads
 from texlab.columns.status import status_line
 from texlab.runs import controller
 from texlab_core.errors import Cancelled
@@ -156,3 +157,23 @@ def test_the_window_closes_while_code_is_loaded(
     explorer.window.close()
     assert not explorer.window.isVisible()
     assert "did not end" not in caplog.text
+
+
+def test_the_window_does_not_wait_for_what_is_being_compiled(
+    open_window: Callable[..., Explorer],
+    texture: Path,
+    stub: Method,
+    loader: Loader,
+    qtbot: Any,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    explorer = open_window(str(texture), [STUB], wait=False)
+    wait_loading(qtbot, explorer, ids(explorer)[0])
+    explorer.window.close()
+    # Closed, although the loader minds no cancel; at the end of the program its thread is waited for.
+    (thread,) = (each for each in threading.enumerate() if each.name == "texlab-warming")
+    assert thread.is_alive()
+    assert "did not end" not in caplog.text
+    loader.may_come.set()
+    await_threads()
+    assert not thread.is_alive()

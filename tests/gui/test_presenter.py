@@ -11,7 +11,7 @@ from dock_scenes import column_of, image_input, noise, scene_of
 from PySide6.QtCore import QObject, QRectF
 from PySide6.QtGui import QAction
 
-from texlab.columns.overlays import Overlays
+from texlab.columns.overlays import Overlays, available
 from texlab.columns.status import details, status_parts
 from texlab.runs.exemplar import Prepared
 from texlab.state.session import Column, Sample, Session, State
@@ -20,6 +20,7 @@ from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.view_link import ViewLink
 from texlab.window.presenter import Presenter
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.late_maps import LateMaps, made_map
 from texlab_core.engine.registry import methods
 from texlab_core.engine.steps import Map
 
@@ -250,3 +251,35 @@ def test_a_running_column_says_how_long_it_takes() -> None:
     assert parts == ["level 2", "about 30 s left"]
     assert status_parts(column_of(None, status="failed", message="Too small.")) == ["Too small."]
     assert status_parts(column_of(None, status="cancelled", resumable=True)) == ["stopped", "F6 goes on"]
+
+
+# Maps that are made late.
+
+
+def made_by_nobody() -> Map:
+    raise AssertionError("A map was made in the window's thread.")
+
+
+def test_a_map_that_has_to_be_made_is_offered_but_not_made(overlays: Any) -> None:
+    ready = Map(np.full((8, 8, 2), 3, np.int32), "source", "Source")
+    maps = LateMaps({"source": ("Source", lambda: ready), "candidates": ("Candidates", made_by_nobody)})
+    overlays.view.scene = column_of(noise(8, 8), maps=maps)
+    overlays.made.show_scene(scene_of(overlays.view.scene))
+    assert overlays.view.maps[0] == (("source", "Source"), ("candidates", "Candidates"))
+    assert available(overlays.view.scene) == overlays.view.maps[0]
+    assert made_map(maps, "source") is None
+    assert maps["source"] is ready
+    assert made_map(maps, "source") is ready
+    assert made_map({"source": ready}, "source") is ready
+    assert made_map({}, "source") is None
+
+
+def test_the_value_under_the_pointer_tells_only_what_is_there(qapp: Any) -> None:
+    ready = Map(np.full((24, 32, 2), 3, np.int32), "source", "Source")
+    maps = LateMaps({"source": ("Source", lambda: ready), "candidates": ("Candidates", made_by_nobody)})
+    bench = Bench(maps=maps)
+    bench.presenter.say_column_pixel(1, 2, 5)
+    assert "exemplar" not in bench.window.pixel
+    assert maps["source"] is ready
+    bench.presenter.say_column_pixel(1, 2, 5)
+    assert bench.window.pixel.endswith("from exemplar 3, 3")

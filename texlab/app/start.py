@@ -6,6 +6,7 @@ import contextlib
 import gc
 import signal
 import sys
+import threading
 from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QTimer
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
 
 SWITCH_INTERVAL_S = 0.001
+# The window has gone by then.
+LAST_S = 30.0
 ICON_SIZES = (32, 64, 256)
 
 
@@ -87,7 +90,15 @@ def run_gui(image: str | None = None) -> int:
     with closed_by_signals(window):
         code = app.exec()
     window.deleteLater()
+    await_threads()
     return code
+
+
+def await_threads() -> None:
+    """Wait until the program's own threads have ended: compiled code must not be torn down under one of them."""
+    for thread in threading.enumerate():
+        if thread.name.startswith("texlab-") and thread is not threading.current_thread():
+            thread.join(LAST_S)
 
 
 @contextlib.contextmanager

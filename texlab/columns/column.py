@@ -57,6 +57,7 @@ class ColumnView(QFrame):
         super().__init__(parent)
         self.column_id = column_id
         self.scene: ColumnScene | None = None
+        self._title: str | None = None
         self.setObjectName("column")
         self.setProperty("chosen", False)
         self.setProperty("failed", False)
@@ -156,6 +157,9 @@ class ColumnView(QFrame):
 
     def show_title(self, title: str) -> None:
         """Say what the column is."""
+        if title == self._title:
+            return
+        self._title = title
         self.method_box.set_label(title)
         set_tip(self.method_box, f"{title}\nClick: another method for this column" if title else "The method")
 
@@ -191,6 +195,8 @@ class ColumnView(QFrame):
 
     def show_scene(self, scene: ColumnScene) -> None:
         """Show the state of the column; only what differs is touched."""
+        if scene is self.scene:
+            return
         before, self.scene = self.scene, scene
         if before is None or before.method != scene.method:
             with QSignalBlocker(self.method_box):

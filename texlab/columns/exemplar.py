@@ -103,7 +103,7 @@ class ExemplarView(QFrame):
         self.pane.setObjectName("pane-exemplar")
         self.pane.setAccessibleName("Exemplar")
         self.setAccessibleName("Exemplar with its crop and scale")
-        self._box: Any = None
+        self._box = self._make_box()
         self._name = ""
         self._crop: Crop | None = None
         self._rest = QTimer(self)
@@ -210,28 +210,33 @@ class ExemplarView(QFrame):
         room = self.title.width()
         self.title.setText(self.title.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
 
+    def _make_box(self) -> Any:
+        """Make the crop box, once: it comes and goes with every crop."""
+        box = pg.RectROI([0, 0], [1, 1], sideScalers=True, pen=self._pen(), snapSize=1.0)
+        for corner, opposite in (
+            ([0, 0], [1, 1]),
+            ([1, 0], [0, 1]),
+            ([0, 1], [1, 0]),
+            ([0, 0.5], [1, 0.5]),
+            ([0.5, 0], [0.5, 1]),
+        ):
+            box.addScaleHandle(corner, opposite)
+        for handle in box.getHandles():
+            # Nobody sees these menus, and without a parent nobody would delete them.
+            handle.menu.deleteLater()
+        box.sigRegionChanged.connect(lambda: self._dragged(final=False))
+        box.sigRegionChangeFinished.connect(lambda: self._dragged(final=True))
+        box.hide()
+        self.pane.view.addItem(box, ignoreBounds=True)
+        return box
+
     def _show_crop(self, crop: Crop | None) -> None:
-        if crop == self._crop and (crop is None) == (self._box is None):
+        if crop == self._crop and (crop is not None) == self._box.isVisible():
             return
         self._crop = crop
+        self._box.setVisible(crop is not None)
         if crop is None:
-            if self._box is not None:
-                self.pane.view.removeItem(self._box)
-                self._box = None
             return
-        if self._box is None:
-            self._box = pg.RectROI([0, 0], [1, 1], sideScalers=True, pen=self._pen(), snapSize=1.0)
-            self._box.addScaleHandle([0, 0], [1, 1])
-            self._box.addScaleHandle([1, 0], [0, 1])
-            self._box.addScaleHandle([0, 1], [1, 0])
-            self._box.addScaleHandle([0, 0.5], [1, 0.5])
-            self._box.addScaleHandle([0.5, 0], [0.5, 1])
-            for handle in self._box.getHandles():
-                # pyqtgraph makes these menus without a parent, and nobody would delete them.
-                handle.menu.setParent(self, handle.menu.windowFlags())
-            self._box.sigRegionChanged.connect(lambda: self._dragged(final=False))
-            self._box.sigRegionChangeFinished.connect(lambda: self._dragged(final=True))
-            self.pane.view.addItem(self._box)
         with QSignalBlocker(self._box):
             self._box.setPos([crop.left, crop.top], update=False)
             self._box.setSize([crop.width, crop.height])
@@ -254,7 +259,7 @@ class ExemplarView(QFrame):
 
     def _dragged(self, *, final: bool) -> None:
         picture = self.pane.picture
-        if picture is None or self._box is None:
+        if picture is None or not self._box.isVisible():
             return
         height, width = picture.shape[:2]
         position, size = self._box.pos(), self._box.size()

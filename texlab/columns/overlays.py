@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject
 
 from texlab.runs.worker import Worker
 from texlab.style.colouring import colour_map
+from texlab_core.engine.late_maps import map_titles
 
 if TYPE_CHECKING:
     from texlab.columns.column import ColumnView
@@ -38,7 +39,10 @@ class Overlays(QObject):
         """Follow the newest results."""
         present = {column.id for column in scene.columns}
         for gone in [column_id for column_id in self._workers if column_id not in present]:
-            self._workers.pop(gone).close()
+            # Its answer is dropped, and nobody waits for its end.
+            worker = self._workers.pop(gone)
+            worker.leave()
+            worker.deleteLater()
             self._chosen.pop(gone, None)
         for column in scene.columns:
             self._update(column.id)
@@ -80,7 +84,7 @@ class Overlays(QObject):
 def available(scene: ColumnScene) -> tuple[tuple[str, str], ...]:
     """Return (name, title) of the maps that a column has."""
     maps = scene.result.maps if scene.result is not None else {}
-    return tuple((name, shown.title) for name, shown in maps.items())
+    return map_titles(maps)
 
 
 def _colour(task: Task, column_id: int, result: Result, name: str) -> Coloured:

@@ -11,6 +11,7 @@ from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
 from texlab.columns.grid import Grid
 from texlab.columns.titles import titles
+from texlab.state.scene import are_same
 from texlab.style.pictures import Mark
 from texlab.widgets.view_link import ViewLink
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
     from texlab.columns.arrangement import Rows
-    from texlab.state.scene import Scene
+    from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
 
 # The id that stands for the exemplar where a column could stand.
@@ -61,6 +62,7 @@ class Workspace(QScrollArea):
         self._surround = ""
         self._theme: Theme | None = None
         self._order: tuple[int, ...] = ()
+        self._titled: tuple[ColumnScene, ...] = ()
         self._only: tuple[int, ...] | None = None
         self._enlarged: int | None = None
         self._extents = (1, 1), (1, 1)
@@ -96,9 +98,13 @@ class Workspace(QScrollArea):
             if self._enlarged not in (None, EXEMPLAR, *order):
                 self._enlarged = None
             self._show_cells()
-        for column, title in zip(scene.columns, titles(scene.columns), strict=True):
+        if not are_same(scene.columns, self._titled):
+            # The pointer moves far more often than anything that is written changes.
+            self._titled = scene.columns
+            for column, title in zip(scene.columns, titles(scene.columns), strict=True):
+                self.columns[column.id].show_title(title)
+        for column in scene.columns:
             view = self.columns[column.id]
-            view.show_title(title)
             view.show_scene(column)
             view.set_chosen(column.id == scene.selected_id)
             view.pane.set_marks(pinned_pixel(scene, column.id))

@@ -38,6 +38,8 @@ class Dock(QWidget):
     order: ClassVar[int] = 100
     within: ClassVar[str] = ""
     """Name of the dock of which this one is a part; "" for a tab of the window."""
+    follows_pointer: ClassVar[bool] = False
+    """Whether what it shows depends on ``scene.probe``; others do not hear of a pointer that moves."""
     rest_ms: ClassVar[int] = 100
     """How long an answer stays before the dock is asked again."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer
 
 from texlab.runs.worker import Task, Worker
+from texlab.state.scene import same_but_probe
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock, Question
@@ -48,8 +49,10 @@ class DockHost(QObject):
 
     def show_scene(self, scene: Scene) -> None:
         """Take a newer scene."""
-        self._scene = scene
-        self._update()
+        before, self._scene = self._scene, scene
+        moved = before is not None and not self.dock.follows_pointer and same_but_probe(scene, before)
+        if not moved:
+            self._update()
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""

@@ -26,9 +26,12 @@ from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar, pg
+from texlab_core.engine.late_maps import map_titles
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from texlab.state.scene import Scene
     from texlab.style.pictures import Picture
@@ -40,7 +43,7 @@ REGIONS_LISTED = 12
 
 @dataclass(frozen=True, eq=False)
 class MapsAnswer:
-    """A coloured map with what its legend needs."""
+    """A coloured map with what its legend needs; ``sizes`` are the pixels of every label."""
 
     shown: Map
     picture: Picture
@@ -50,6 +53,7 @@ class MapsAnswer:
     scale: colouring.Scale | None = None
     regions: tuple[tuple[int, int], ...] = ()
     region: int = 0
+    sizes: NDArray[np.int64] | None = None
 
 
 def colour(shown: Map, below: Picture | None, extent: tuple[int, int] | None, region: int = 0) -> MapsAnswer:
@@ -64,7 +68,8 @@ def colour(shown: Map, below: Picture | None, extent: tuple[int, int] | None, re
         picture = colouring.mark_edges(picture, shown.data)
         if region and any(label == region for label, _ in regions):
             picture[shown.data != region] //= 5
-        return MapsAnswer(shown, picture, below, extent, regions=regions, region=region)
+        sizes = np.bincount(np.maximum(shown.data, 0).ravel())
+        return MapsAnswer(shown, picture, below, extent, regions=regions, region=region, sizes=sizes)
     return MapsAnswer(shown, picture, below, extent, scale=colouring.map_scale(shown))
 
 
@@ -146,15 +151,15 @@ class MapsDock(FramedDock):
             self.controls.hide()
             return None
         self.controls.show()
-        replace_items(self.chooser, [(each.title, name) for name, each in result.maps.items()])
+        maps = result.maps
+        replace_items(self.chooser, [(title, name) for name, title in map_titles(maps)])
         name = self.chooser.currentData()
-        shown = result.maps[name].plane
         below = column.picture
         extent = scene.exemplar.size if scene.exemplar is not None else None
         region = self._region
 
         def compute(should_stop: Callable[[], bool]) -> MapsAnswer:
-            return colour(shown, below, extent, region)
+            return colour(maps[name].plane, below, extent, region)
 
         return Question((self.name, Same(result), name, region), compute)
 
@@ -234,7 +239,8 @@ def describe(answer: MapsAnswer, value: Any) -> str:
         row, column = (int(part) for part in value)
         return "no source" if min(row, column) < 0 else f"from exemplar {column}, {row}"
     if shown.kind == "label":
-        pixels = int(np.count_nonzero(shown.data == value)) if value > 0 else 0
-        return f"region {int(value)}, {pixels} pixels" if value > 0 else "no region"
+        if value <= 0 or answer.sizes is None:
+            return "no region"
+        return f"region {int(value)}, {answer.sizes[value]} pixels"
     unit = f" {shown.unit}" if shown.unit else ""
     return f"{number(float(value))}{unit}"

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 ValueT = TypeVar("ValueT")
 
+# Enough for going back and forth between what is compared.
+MOST = 12
+
 
 class Same:
     """Makes any object a part of a key: equal only to itself, and alive as long as the key."""
@@ -28,10 +31,21 @@ class Same:
 
 
 class Recent:
-    """Values by key, the most recently used ones, as many as weigh no more than ``capacity`` together."""
+    """Values by key, the most recently used ones, as many as weigh no more than ``capacity`` together.
 
-    def __init__(self, capacity: float, weigh: Callable[[Any], float] | None = None) -> None:
+    Parameters
+    ----------
+    capacity
+        What they may weigh together.
+    weigh
+        What one weighs; 1 without it.
+    most
+        How many there may be, whatever they weigh: keys hold what they tell apart.
+    """
+
+    def __init__(self, capacity: float, weigh: Callable[[Any], float] | None = None, most: int = MOST) -> None:
         self._capacity = capacity
+        self._most = most
         self._weigh = weigh or (lambda value: 1.0)
         self._values: OrderedDict[Hashable, Any] = OrderedDict()
         self._lock = threading.Lock()
@@ -50,6 +64,14 @@ class Recent:
         with self._lock:
             kept: ValueT = self._values.setdefault(key, made)
             weight = sum(self._weigh(value) for value in self._values.values())
-            while weight > self._capacity and len(self._values) > 2:
+            while (weight > self._capacity or len(self._values) > self._most) and len(self._values) > 2:
                 weight -= self._weigh(self._values.popitem(last=False)[1])
         return kept
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._values.clear()

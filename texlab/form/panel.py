@@ -62,6 +62,9 @@ class ParametersView(QWidget):
         layout.addWidget(self.scroll_area, 1)
         layout.addLayout(buttons)
         self.form: ParameterForm | None = None
+        # What which form was handed last.
+        self._context: ColumnScene | None = None
+        self._told: ParameterForm | None = None
         self._column_id = 0
         self._method = ""
         self.reset_button.clicked.connect(lambda: self.reset_wanted.emit(self._column_id))
@@ -91,7 +94,8 @@ class ParametersView(QWidget):
 
     def show_scene(self, scene: ColumnScene | None) -> None:
         """Hand the column's present result to the special editors."""
-        if self.form is not None:
+        if self.form is not None and (scene is not self._context or self.form is not self._told):
+            self._context, self._told = scene, self.form
             self.form.set_context(scene)
 
     def _set_form(self, form: ParameterForm | None) -> None:

@@ -39,6 +39,9 @@ if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.params import Params
 
+# What the analyses of earlier exemplars and parameters may take together.
+ANALYSES_BYTES = 256 * 2**20
+
 
 class Controller(QObject):
     """Runs columns when the session changes and tells the window what to show.
@@ -58,7 +61,9 @@ class Controller(QObject):
     def __init__(self, session: Session, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.session = session
-        self._shared = Shared(Slots(max(1, os.cpu_count() or 1)), AnalysisCache(), Warmth())
+        self._shared = Shared(
+            Slots(max(1, os.cpu_count() or 1)), AnalysisCache(max_bytes=ANALYSES_BYTES), Warmth()
+        )
         self._runners: dict[int, ColumnRunner] = {}
         self._leaving: list[ColumnRunner] = []
         self._dragging = False
@@ -330,7 +335,9 @@ class Controller(QObject):
         """Stop and join every thread; they end side by side."""
         self.leave()
         for each in self._threads():
-            each.close()
+            # What is being compiled cannot be stopped at once: the thread ends by itself, and nobody waits for it.
+            if each is not self._warming:
+                each.close()
         self._runners.clear()
         self._leaving.clear()
 

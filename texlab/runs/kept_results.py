@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
     from texlab.runs.column_run import Finished
 
-MAX_BYTES = 512 * 2**20
+MAX_BYTES = 256 * 2**20
+MOST = 64
 
 
 class KeptResults:
@@ -23,10 +24,13 @@ class KeptResults:
     ----------
     max_bytes
         How much pictures, frames, maps and models may take together. The newest one is kept whatever it takes.
+    most
+        How many there may be.
     """
 
-    def __init__(self, max_bytes: int = MAX_BYTES) -> None:
+    def __init__(self, max_bytes: int = MAX_BYTES, most: int = MOST) -> None:
         self._max_bytes = max_bytes
+        self._most = most
         self._kept: OrderedDict[Hashable, tuple[Finished, int]] = OrderedDict()
         self._lock = threading.Lock()
 
@@ -44,7 +48,7 @@ class KeptResults:
         with self._lock:
             self._kept[key] = end, size
             self._kept.move_to_end(key)
-            while len(self._kept) > 1 and self._sum() > self._max_bytes:
+            while len(self._kept) > self._most or (len(self._kept) > 1 and self._sum() > self._max_bytes):
                 self._kept.popitem(last=False)
 
     @property

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import operator
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +14,7 @@ from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping
+    from collections.abc import Hashable, Mapping, Sequence
 
     from texlab.state.sweeps import ShownCell
     from texlab.style.pictures import Picture
@@ -209,3 +210,18 @@ class Scene:
     def selected(self) -> ColumnScene | None:
         """The chosen column."""
         return next((column for column in self.columns if column.id == self.selected_id), None)
+
+
+def are_same(columns: Sequence[ColumnScene], others: Sequence[ColumnScene]) -> bool:
+    """Whether these are the very same pictures of the same columns, in the same order."""
+    return len(columns) == len(others) and all(map(operator.is_, columns, others))
+
+
+def same_but_probe(scene: Scene, other: Scene) -> bool:
+    """Whether two scenes differ in nothing but the pixel that the user asks about."""
+    names = (each.name for each in fields(Scene) if each.name not in ("columns", "probe", "seed", "selected_id"))
+    return (
+        are_same(scene.columns, other.columns)
+        and (scene.seed, scene.selected_id) == (other.seed, other.selected_id)
+        and all(getattr(scene, name) is getattr(other, name) for name in names)
+    )

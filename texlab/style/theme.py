@@ -185,7 +185,10 @@ def stylesheet(theme: Theme, points: float) -> str:
 
 def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
-    application.setStyle("Fusion")
+    if application.property("texlab-style") is None:
+        # Once: every further style would stay in memory.
+        application.setStyle("Fusion")
+        application.setProperty("texlab-style", True)
     application.setPalette(palette(theme))
     # Fusion outlines check boxes with the darkened window colour, which a dark theme swallows.
     boxes = palette(theme)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 
 from texlab.state.changes import reduced_words
 from texlab.style.pictures import describe_pixel
+from texlab_core.engine.late_maps import made_map
 from texlab_core.engine.registry import methods
 
 if TYPE_CHECKING:
@@ -125,11 +126,13 @@ class Presenter(QObject):
             if row < height and column < width:
                 text = describe_pixel(scene.image, row, column)
                 maps = scene.result.maps if scene.result is not None else {}
-                if "source" in maps:
-                    origin = maps["source"].plane.data[row, column]
+                # Only what is there already: making a map takes long.
+                source, counts = made_map(maps, "source"), made_map(maps, "candidates")
+                if source is not None:
+                    origin = source.plane.data[row, column]
                     text += f"   from exemplar {origin[1]}, {origin[0]}"
-                if "candidates" in maps:
-                    text += f"   candidates {maps['candidates'].plane.data[row, column]}"
+                if counts is not None:
+                    text += f"   candidates {counts.plane.data[row, column]}"
         self._window.pixel_label.setText(text)
 
     def _show_choice(self) -> None:

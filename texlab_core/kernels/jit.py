@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from texlab_core.errors import Cancelled
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 FunctionT = TypeVar("FunctionT", bound="Callable[..., Any]")
+# What numba calls the event of a pass of its compiler.
+_PASS = "numba:run_pass"
 
 
 def njit(function: FunctionT) -> FunctionT:
@@ -26,6 +32,36 @@ def njit(function: FunctionT) -> FunctionT:
     except RuntimeError:
         # numba raises on decoration when it finds no folder to write its cache to.
         return cast("FunctionT", numba.njit(nogil=True)(function))
+
+
+@contextlib.contextmanager
+def stoppable_compiling(should_stop: Callable[[], bool] | None) -> Iterator[None]:
+    """Within the block, ask ``should_stop`` before every pass of the compiler in this thread.
+
+    A kernel that is compiled for the first time on a machine takes seconds, a pass of it mostly hundredths.
+
+    Raises
+    ------
+    Cancelled
+        Out of the call that compiles, when ``should_stop`` said so; the next call compiles the kernel.
+    """
+    if should_stop is None:
+        yield
+        return
+    from numba.core import event
+
+    here, is_over = threading.get_ident(), should_stop
+
+    class Asking(event.Listener):  # type: ignore[misc]  # numba has no types
+        def on_start(self, event: Any) -> None:
+            if threading.get_ident() == here and is_over():
+                raise Cancelled
+
+        def on_end(self, event: Any) -> None:
+            pass
+
+    with event.install_listener(_PASS, Asking()):
+        yield
 
 
 def _choose_cache_directory() -> None:

@@ -39,6 +39,7 @@ class ExplainDock(FramedDock):
         "Heeger-Bergen: what every subband adds to the pixel."
     )
     order = 22
+    follows_pointer = True
     rest_ms = 0
     empty = INVITATION
 

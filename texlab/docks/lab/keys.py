@@ -47,6 +47,7 @@ class KeysPage(LabPage):
     """Counts what each way of searching looks at."""
 
     name = "lab-keys"
+    follows_pointer = True
     title = "Keys"
     help = "How many structures are compared by blank search, by hash keys and by the hierarchy (exercise 1)."
     empty = "Choose a column of De Bonet with a finished result; point at a pixel of it, or pin one by a click."

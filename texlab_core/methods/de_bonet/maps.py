@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.engine.steps import Map
 from texlab_core.methods.de_bonet.analysis import PIXELS_AT_ONCE
 from texlab_core.methods.de_bonet.sampling import list_matches, match_chain
 from texlab_core.work.tasks import row_bounds
@@ -21,29 +19,6 @@ if TYPE_CHECKING:
 
 # Locations whose candidates are listed for the median where listing them all would take too long.
 _SAMPLED = 64
-
-
-class LazyMaps(Mapping[str, Map]):
-    """Maps that are made when somebody looks."""
-
-    def __init__(self, makers: Mapping[str, Callable[[], Map]]) -> None:
-        self._makers = dict(makers)
-        self._made: dict[str, Map] = {}
-
-    def __getitem__(self, name: str) -> Map:
-        if name not in self._made:
-            self._made.setdefault(name, self._makers[name]())
-        return self._made[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._makers)
-
-    def __len__(self) -> int:
-        return len(self._makers)
-
-    def __reduce__(self) -> tuple[type[dict[str, Map]], tuple[dict[str, Map]]]:
-        # Another process gets the maps themselves.
-        return dict, (dict(self),)
 
 
 def source_map_steps(

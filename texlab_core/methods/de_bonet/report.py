@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.engine.late_maps import LateMaps
 from texlab_core.engine.steps import Curve, Map, Output, Step
 from texlab_core.measures.copying import continuous_share_steps, copied_regions_steps, largest_copy
 from texlab_core.methods.de_bonet.growth import total_work
-from texlab_core.methods.de_bonet.maps import LazyMaps, candidate_map, median_candidates, source_map_steps
+from texlab_core.methods.de_bonet.maps import candidate_map, median_candidates, source_map_steps
 from texlab_core.work.tasks import through
 
 if TYPE_CHECKING:
@@ -59,11 +60,11 @@ def report_steps(
         yield step
     labels, region_sizes = yield from through(copied_regions_steps(source), step)
     levels = np.arange(grid.depth, -1, -1)
-    maps = LazyMaps(
+    maps = LateMaps(
         {
-            "source": lambda: Map(source, "source", "Source", "px"),
-            "candidates": lambda: Map(candidate_map(sampling, size), "count", "Candidates"),
-            "copied": lambda: Map(labels, "label", "Copied regions"),
+            "source": ("Source", lambda: Map(source, "source", "Source", "px")),
+            "candidates": ("Candidates", lambda: Map(candidate_map(sampling, size), "count", "Candidates")),
+            "copied": ("Copied regions", lambda: Map(labels, "label", "Copied regions")),
         }
     )
     curves = {

@@ -1,0 +1,1 @@
+"""A soak of the window: thousands of random real events, and what they leave behind."""
