@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.state.sources import with_known_source
+from texlab.state.sources import known_source
 from texlab_core.engine.job import DEFAULT_SIZE, MAX_SEED
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import default_size, size_text
@@ -277,7 +277,9 @@ class Session(QObject):
 
     def set_sample(self, sample: Sample, *, merge: object | None = None) -> None:
         """Choose another exemplar, or another crop or scale of it."""
-        sample = with_known_source(sample, (each.state.sample for each in reversed(self._entries)))
+        known = (each.state.sample for each in reversed(self._entries))
+        source = known_source(sample.source, (each.source for each in known if each is not None))
+        sample = dataclasses.replace(sample, source=source)
         same_source = self.state.sample is not None and self.state.sample.source is sample.source
         text = "crop or scale" if same_source else f"exemplar {sample.source.name}"
         if self.state.sample is not None and sample.path is not None and sample.alpha != self.state.sample.alpha:

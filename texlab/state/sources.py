@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from texlab.state.session import Sample
     from texlab_core.engine.inputs import ImageInput
 
 _FACTS = ("sha256", "name", "notes", "depth")
 
 
-def with_known_source(sample: Sample, known: Iterable[Sample | None]) -> Sample:
-    """Return a sample whose source is the very one of a known sample, where that has the same picture."""
-    wanted = sample.source
-    for each in known:
-        if each is not None and (each.source is wanted or _is_same(each.source, wanted)):
-            return sample if each.source is wanted else dataclasses.replace(sample, source=each.source)
-    return sample
+def known_source(source: ImageInput, known: Iterable[ImageInput]) -> ImageInput:
+    """Return the known source that is the same picture, or else this one."""
+    return next((each for each in known if each is source or _is_same(each, source)), source)
 
 
 def _is_same(one: ImageInput, other: ImageInput) -> bool:
