@@ -68,7 +68,7 @@ def test_groups_are_the_search_the_sweep_and_the_methods():
     scene = Scene(
         exemplar=exemplar(),
         sweep=SweepScene(sweep=sweep, cells=(*cells, other)),
-        tuning=TuningScene(trials=(shown_of(-3, 0.4), bare)),
+        tuning=TuningScene(cells=(shown_of(-3, 0.4), bare)),
         points=(shown_of(-2, 0.3), other),
     )
     search, swept, stub_runs = groups_of(scene)
@@ -214,7 +214,7 @@ def test_runs_become_points_a_search_adds_more_and_a_click_takes_one(qtbot, benc
     assert tuning.status == "finished", tuning.problem
     qtbot.waitUntil(lambda: dock.status.text() == tuning.found.sentence, timeout=PATIENCE_MS)
     usable = {each.params for each in tuning.found.trials if each.usable}
-    assert {each.cell.job.params for each in tuning.trials} == usable
+    assert {each.cell.job.params for each in tuning.cells} == usable
 
     # The pointer shows a point, a click takes its parameters as one step of the history.
     viewport = dock.plot.graph.viewport()
@@ -274,7 +274,7 @@ def test_stop_keeps_the_points(qtbot, bench, monkeypatch):
 
     monkeypatch.setattr("texlab.runs.tuning_runner.tune", endless)
     dock.suggest()
-    qtbot.waitUntil(lambda: len(bench.controller.scene().tuning.trials) == 1, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: len(bench.controller.scene().tuning.cells) == 1, timeout=PATIENCE_MS)
     qtbot.waitUntil(dock.stop_button.isEnabled, timeout=PATIENCE_MS)
     qtbot.mouseClick(dock.stop_button, Qt.MouseButton.LeftButton)
     assert isinstance(bench.intended[-1], StopTuning)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from texlab.runs.cell_runner import CellsMade, Teller, workers
 from texlab.runs.column_run import TaskLike, job_of
 from texlab.state.sweeps import ShownCell
 from texlab.style.pictures import to_picture
@@ -24,14 +24,6 @@ if TYPE_CHECKING:
 
 # All results are kept at full precision, for the sheet that is saved: 12 bytes a pixel.
 MAX_PIXELS = 32 * 2**20
-
-
-@dataclass(frozen=True, eq=False)
-class SweepProgress:
-    """All cells that have finished so far, in the order of finishing, and the share done."""
-
-    cells: tuple[ShownCell, ...]
-    fraction: float
 
 
 def sweep_of(plan: SweepPlan, state: State, column: Column, exemplar: ImageInput) -> Sweep:
@@ -63,22 +55,14 @@ class SweepRun:
     sweep: Sweep
     places: Places
 
-    def __call__(self, task: TaskLike) -> SweepProgress:
+    def __call__(self, task: TaskLike) -> CellsMade:
         """Run to the end, reporting every cell."""
-        made: list[ShownCell] = []
-        fraction = 0.0
+        teller = Teller(task)
 
         def show(cell: Cell) -> None:
-            picture = None if cell.result is None else to_picture(cell.result.image)
-            made.append(ShownCell(cell, picture))
-            task.progress(SweepProgress(tuple(made), fraction))
+            teller.add(ShownCell(cell, None if cell.result is None else to_picture(cell.result.image)))
 
-        def advance(share: float) -> None:
-            nonlocal fraction
-            fraction = share
-            if task.due():
-                task.progress(SweepProgress(tuple(made), share))
-
-        workers = max(1, (os.cpu_count() or 1) - 1)
-        run_sweep(self.sweep, show, task.should_stop, on_progress=advance, workers=workers, places=self.places)
-        return SweepProgress(tuple(made), 1.0)
+        run_sweep(
+            self.sweep, show, task.should_stop, on_progress=teller.advance, workers=workers(), places=self.places
+        )
+        return teller.end()

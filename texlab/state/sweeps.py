@@ -43,19 +43,15 @@ class ShownCell:
 
 
 @dataclass(frozen=True, eq=False)
-class SweepScene:
-    """What there is to see of the newest sweep.
+class CellsScene:
+    """What there is to see of many cells that are made one after the other, those of a sweep or of a search.
 
     Parameters
     ----------
     number
-        Counts the sweeps that were started; 0 when there is none yet.
-    asked
-        What was asked for last, also when it could not be started.
+        Counts what was started; 0 when there is nothing yet.
     problem
         Why what was asked for last could not be started or failed; "" when it was.
-    plan, sweep
-        What the cells are of; None when there are none yet.
     column_id
         The column that it was started for.
     status
@@ -64,25 +60,39 @@ class SweepScene:
         Those that have finished, in the order of finishing.
     fraction
         Share done, 0 .. 1.
-    seconds
-        Wall time since the start, at the newest report.
     """
 
     number: int = 0
-    asked: SweepPlan | None = None
     problem: str = ""
-    plan: SweepPlan | None = None
-    sweep: Sweep | None = None
     column_id: int = 0
     status: Literal["idle", "running", "finished", "stopped", "failed"] = "idle"
     cells: tuple[ShownCell, ...] = ()
     fraction: float = 0.0
-    seconds: float = 0.0
 
     @property
     def running(self) -> bool:
         """Whether cells are being made."""
         return self.status == "running"
+
+
+@dataclass(frozen=True, eq=False)
+class SweepScene(CellsScene):
+    """What there is to see of the newest sweep.
+
+    Parameters
+    ----------
+    asked
+        What was asked for last, also when it could not be started.
+    plan, sweep
+        What the cells are of; None when there are none yet.
+    seconds
+        Wall time since the start, at the newest report.
+    """
+
+    asked: SweepPlan | None = None
+    plan: SweepPlan | None = None
+    sweep: Sweep | None = None
+    seconds: float = 0.0
 
 
 NO_SWEEP = SweepScene()

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from texlab.state.sweeps import CellsScene
+
 if TYPE_CHECKING:
-    from texlab.state.sweeps import ShownCell
     from texlab_core.sheets.tuning import Tuning
 
 
@@ -30,42 +31,19 @@ class TuningPlan:
 
 
 @dataclass(frozen=True, eq=False)
-class TuningScene:
-    """What there is to see of the newest search.
+class TuningScene(CellsScene):
+    """What there is to see of the newest search; its cells are the trials, with small pictures.
 
     Parameters
     ----------
-    number
-        Counts the searches that were started; 0 when there is none yet.
-    problem
-        Why what was asked for last could not be started, or failed.
     plan
         What the trials are of; None when there are none yet.
-    column_id
-        The column that it was started for.
-    status
-        idle, running, finished, stopped or failed.
-    trials
-        Those that have finished, in the order of finishing, with small pictures.
-    fraction
-        Share of the budget that is used, 0 .. 1.
     found
         What came out, when it has finished.
     """
 
-    number: int = 0
-    problem: str = ""
     plan: TuningPlan | None = None
-    column_id: int = 0
-    status: Literal["idle", "running", "finished", "stopped", "failed"] = "idle"
-    trials: tuple[ShownCell, ...] = ()
-    fraction: float = 0.0
     found: Tuning | None = None
-
-    @property
-    def running(self) -> bool:
-        """Whether it searches."""
-        return self.status == "running"
 
 
 NO_TUNING = TuningScene()

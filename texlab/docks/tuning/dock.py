@@ -169,7 +169,7 @@ class TuningDock(FramedDock):
     def _draw(self) -> None:
         scene = self._scene
         x, y = self.across.currentData(), self.up.currentData()
-        what = (scene.points, scene.sweep.cells, scene.tuning.trials, scene.exemplar, x, y, tuple(self._own))
+        what = (scene.points, scene.sweep.cells, scene.tuning.cells, scene.exemplar, x, y, tuple(self._own))
         if len(what) == len(self._drawn) and all(a is b or a == b for a, b in zip(what, self._drawn, strict=True)):
             return
         self._drawn = what
@@ -220,9 +220,9 @@ class TuningDock(FramedDock):
         self.progress.setValue(round(1000 * shown.fraction))
         words = shown.problem or ("" if shown.found is None else shown.found.sentence)
         if shown.running:
-            words = f"{len(shown.trials)} runs so far"
+            words = f"{len(shown.cells)} runs so far"
         elif shown.status == "stopped":
-            words = f"Stopped after {len(shown.trials)} runs; click a point to take it"
+            words = f"Stopped after {len(shown.cells)} runs; click a point to take it"
         self.status.setText(words)
         set_tip(self.status, words)
 

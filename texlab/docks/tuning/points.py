@@ -66,7 +66,7 @@ def groups_of(scene: Scene) -> tuple[Group, ...]:
         return bool(shown.cell.measures) and exemplar is not None and exemplar.sha256 == sha256
 
     found: list[Group] = []
-    trials = tuple(filter(usable, scene.tuning.trials))
+    trials = tuple(filter(usable, scene.tuning.cells))
     if trials:
         found.append(Group("search", trials))
     cells = tuple(sorted(filter(usable, scene.sweep.cells), key=lambda each: each.cell.index))

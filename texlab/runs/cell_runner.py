@@ -1,0 +1,147 @@
+"""Many cells at work, of a sweep or of a search: their thread, and what there is to see of them."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, Signal
+
+from texlab.runs.worker import Worker
+from texlab_core.errors import InputError
+from texlab_core.warming import Need
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from texlab.runs.column_run import TaskLike
+    from texlab.runs.slots import Slots
+    from texlab.runs.worker import Request
+    from texlab.state.session import Column, State
+    from texlab.state.sweeps import CellsScene, ShownCell
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.warming import Warmth
+
+
+def workers() -> int:
+    """Return how many cells are made side by side: one core is left to the columns."""
+    return max(1, (os.cpu_count() or 1) - 1)
+
+
+@dataclass(frozen=True, eq=False)
+class CellsMade:
+    """The cells that have finished so far, in the order of finishing, the share done, and what else came of it."""
+
+    cells: tuple[ShownCell, ...]
+    fraction: float
+    more: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+
+class Teller:
+    """Keeps what has finished, and reports it (in the worker's thread)."""
+
+    def __init__(self, task: TaskLike) -> None:
+        self._task = task
+        self._made: list[ShownCell] = []
+        self._fraction = 0.0
+
+    def add(self, cell: ShownCell) -> None:
+        """Report another cell."""
+        self._made.append(cell)
+        self._task.progress(CellsMade(tuple(self._made), self._fraction))
+
+    def advance(self, share: float) -> None:
+        """Report the share done, when that is due."""
+        self._fraction = share
+        if self._task.due():
+            self._task.progress(CellsMade(tuple(self._made), share))
+
+    def end(self, **more: Any) -> CellsMade:
+        """Return everything at the end."""
+        return CellsMade(tuple(self._made), 1.0, more)
+
+
+class CellRunner(QObject):
+    """Runs what was asked for last instead of what ran before; ``changed()`` tells that ``scene`` is another one.
+
+    Parameters
+    ----------
+    name
+        Of the thread.
+    scene
+        What there is to see before anything was asked for.
+    slots, warmth
+        Places on the cores, and what is loaded.
+    """
+
+    changed = Signal()
+
+    def __init__(
+        self, name: str, scene: CellsScene, slots: Slots, warmth: Warmth, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.scene = scene
+        self._name = name
+        self._slots = slots
+        self._warmth = warmth
+        # Most sessions never ask for any, and need no thread for it.
+        self._worker: Worker | None = None
+
+    def stop(self) -> None:
+        """Stop; what has finished stays."""
+        if self._worker is not None:
+            self._worker.cancel()
+
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting."""
+        if self._worker is not None:
+            self._worker.leave()
+
+    def close(self) -> None:
+        """Stop the thread and wait for its end."""
+        if self._worker is not None:
+            self._worker.close()
+
+    def _begin(
+        self,
+        state: State,
+        column_id: int,
+        exemplar: ImageInput | None,
+        make: Callable[[Column, ImageInput], tuple[CellsScene, Request]],
+        **asked: Any,
+    ) -> None:
+        """Run what ``make`` returns; what cannot be run is said in ``scene.problem``, and what runs goes on."""
+        column = state.column(column_id)
+        if column is None or exemplar is None:
+            self._show(problem="There is no exemplar yet.", **asked)
+            return
+        try:
+            scene, request = make(column, exemplar)
+        except InputError as error:
+            self._show(problem=str(error), **asked)
+            return
+        self.scene = dataclasses.replace(
+            scene, number=self.scene.number + 1, column_id=column_id, status="running"
+        )
+        if self._worker is None:
+            self._worker = self._make_worker()
+        need, warmth = Need(column.method, exemplar.channels), self._warmth
+        self._worker.submit(request, first=lambda task: warmth.wait(need, task.should_stop))
+        self.changed.emit()
+
+    def _make_worker(self) -> Worker:
+        worker = Worker(self._name, parent=self)
+        worker.progressed.connect(self._progressed)
+        worker.finished.connect(lambda made: self._progressed(made, status="finished"))
+        worker.failed.connect(lambda sentence: self._show(status="failed", problem=sentence))
+        worker.cancelled.connect(lambda: self._show(status="stopped"))
+        return worker
+
+    def _progressed(self, made: CellsMade, **more: Any) -> None:
+        self._show(cells=made.cells, fraction=made.fraction, **made.more, **more)
+
+    def _show(self, **changes: Any) -> None:
+        self.scene = dataclasses.replace(self.scene, **changes)
+        self.changed.emit()
