@@ -6,26 +6,17 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QActionGroup
-from PySide6.QtWidgets import (
-    QBoxLayout,
-    QFrame,
-    QHBoxLayout,
-    QMenu,
-    QProgressBar,
-    QToolButton,
-    QVBoxLayout,
-)
+from PySide6.QtWidgets import QMenu, QProgressBar, QToolButton
 
+from texlab.columns.cell import Cell
 from texlab.columns.commands import COLUMN_COMMANDS
-from texlab.columns.foot import Foot, body_frame
+from texlab.columns.foot import Foot
 from texlab.columns.grip import Grip
 from texlab.columns.history_popup import numbers_before
 from texlab.columns.numbers_popup import NumbersPopup
-from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import set_tip
 from texlab.widgets.short_box import ShortBox
-from texlab.widgets.status_line import strut
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -33,13 +24,11 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QAction, QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.columns.arrangement import Frame, Words
     from texlab.state.scene import ColumnScene
-    from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
 
 
-class ColumnView(QFrame):
+class ColumnView(Cell):
     """Shows a :class:`ColumnScene`; every wish of the user leaves as a signal with the column's id."""
 
     chosen = Signal(int)
@@ -54,11 +43,10 @@ class ColumnView(QFrame):
     def __init__(
         self, column_id: int, methods: Iterable[tuple[str, str]], link: ViewLink, parent: QWidget | None = None
     ) -> None:
-        super().__init__(parent)
+        super().__init__(Foot(f"line-{column_id}"), link, 1, parent)
         self.column_id = column_id
         self.scene: ColumnScene | None = None
         self._title: str | None = None
-        self.setObjectName("column")
         self.setProperty("chosen", False)
         self.setProperty("failed", False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -88,20 +76,15 @@ class ColumnView(QFrame):
         self.menu_button.setMenu(self.menu)
         self.menu_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu_button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
-        self.pane = ImagePane(link, self)
         self.pane.setObjectName(f"pane-{column_id}")
         self.progress = QProgressBar()
         self.progress.setObjectName(f"progress-{column_id}")
         self.progress.setRange(0, 1000)
         self.progress.setTextVisible(False)
         self.progress.hide()
-        self.foot = Foot(f"line-{column_id}")
-        self.line = self.foot.line
         self.progress.setAccessibleName("Progress of this column")
         self.stop_button.hide()
         self.grip = Grip(f"grip-{column_id}")
-        self.head = QHBoxLayout()
-        self.head.setSpacing(1)
         self.head.addWidget(self.grip)
         self.head.addWidget(self.method_box, 1)
         for button in (self.run_button, self.stop_button, self.menu_button):
@@ -109,17 +92,7 @@ class ColumnView(QFrame):
         # The row is as high as that of the exemplar.
         crop = QToolButton()
         crop.setText("Crop")
-        for model in (NumberBox(), crop):
-            self.head.addWidget(strut(model))
-        self.body = QBoxLayout(QBoxLayout.Direction.TopToBottom)
-        self.body.setSpacing(2)
-        self.body.addWidget(self.pane, 1)
-        self.body.addWidget(self.foot)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(1, 1, 1, 1)
-        layout.setSpacing(1)
-        layout.addLayout(self.head)
-        layout.addLayout(self.body, 1)
+        self.lay_out(NumberBox(), crop)
         self.progress.setParent(self.pane)
         self.method_box.activated.connect(
             lambda place: self.method_chosen.emit(self.column_id, self.method_box.itemData(place))
@@ -144,16 +117,6 @@ class ColumnView(QFrame):
         self.foot.clicked.connect(lambda: self.chosen.emit(self.column_id))
         self.foot.details_wanted.connect(self.show_numbers)
         self.show_title("")
-
-    def frame_of(self, words: Words) -> Frame:
-        """Return what is around the picture when the words stand there."""
-        return body_frame(self, self.head, self.foot, words)
-
-    def set_words(self, words: Words) -> None:
-        """Show the words there."""
-        self.foot.set_words(words)
-        ways = QBoxLayout.Direction
-        self.body.setDirection(ways.LeftToRight if words == "beside" else ways.TopToBottom)
 
     def show_title(self, title: str) -> None:
         """Say what the column is."""
@@ -248,10 +211,6 @@ class ColumnView(QFrame):
     def set_chosen(self, chosen: bool) -> None:
         """Frame the chosen column."""
         self._set_flag("chosen", chosen)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self.pane.set_theme(theme)
 
     def _set_flag(self, name: str, value: bool) -> None:
         if self.property(name) != value:

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QVBoxLayout
+from PySide6.QtWidgets import QMenu, QSizePolicy, QToolButton
 
-from texlab.columns.foot import Foot, body_frame
+from texlab.columns.cell import Cell
+from texlab.columns.foot import Foot
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
-from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
-from texlab.widgets.status_line import strut
 from texlab_core.engine.inputs import Crop
 from texlab_core.images.unit_range import use_of_alpha
 
@@ -25,10 +24,8 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.columns.arrangement import Frame, Words
     from texlab.state.session import Sample
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
 
 MIN_CROP = 8
@@ -52,7 +49,7 @@ _STEPS = {
 }
 
 
-class ExemplarView(QFrame):
+class ExemplarView(Cell):
     """Shows the scaled source; the crop box recomputes everything while it is dragged.
 
     ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source;
@@ -69,8 +66,7 @@ class ExemplarView(QFrame):
     enlarged = Signal()
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName("column")
+        super().__init__(Foot("exemplar-line", has_figures=False), link, 2, parent)
         self.title = Label("Exemplar")
         self.title.setObjectName("exemplar-title")
         self.title.setProperty("role", "heading")
@@ -97,9 +93,6 @@ class ExemplarView(QFrame):
         self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
         self.scale_box.setPrefix("×")
-        self.foot = Foot("exemplar-line", has_figures=False)
-        self.line = self.foot.line
-        self.pane = ImagePane(link, self)
         self.pane.setObjectName("pane-exemplar")
         self.pane.setAccessibleName("Exemplar")
         self.setAccessibleName("Exemplar with its crop and scale")
@@ -117,8 +110,6 @@ class ExemplarView(QFrame):
         self.choices.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.choices.setMenu(QMenu(self.choices))
         self.choices.hide()
-        self.head = QHBoxLayout()
-        self.head.setSpacing(2)
         self.head.addWidget(self.title, 1)
         self.head.addWidget(self.choices)
         self.head.addWidget(self.crop_button)
@@ -126,32 +117,12 @@ class ExemplarView(QFrame):
         # The row is as high as those of the columns.
         button = QToolButton()
         button.setText("▶■⋯")
-        for model in (ShortBox(), button):
-            self.head.addWidget(strut(model))
-        self.body = QBoxLayout(QBoxLayout.Direction.TopToBottom)
-        self.body.setSpacing(2)
-        self.body.addWidget(self.pane, 1)
-        self.body.addWidget(self.foot)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(1, 1, 1, 1)
-        layout.setSpacing(1)
-        layout.addLayout(self.head)
-        layout.addLayout(self.body, 1)
+        self.lay_out(ShortBox(), button)
         self.crop_button.clicked.connect(self._toggle)
         self.scale_box.valueChanged.connect(self.scale_changed)
         self.pane.hovered.connect(self.hovered)
         self.pane.clicked.connect(self.clicked)
         self.pane.double_clicked.connect(self.enlarged)
-
-    def frame_of(self, words: Words) -> Frame:
-        """Return what is around the picture when the words stand there."""
-        return body_frame(self, self.head, self.foot, words)
-
-    def set_words(self, words: Words) -> None:
-        """Show the words there."""
-        self.foot.set_words(words)
-        ways = QBoxLayout.Direction
-        self.body.setDirection(ways.LeftToRight if words == "beside" else ways.TopToBottom)
 
     def show_source(self, picture: Picture | None) -> None:
         """Show the scaled source."""
@@ -307,7 +278,3 @@ class ExemplarView(QFrame):
     def _settle(self) -> None:
         if self._crop is not None:
             self.crop_changed.emit(self._crop, True)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self.pane.set_theme(theme)

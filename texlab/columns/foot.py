@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from PySide6.QtGui import QMouseEvent, QResizeEvent
-    from PySide6.QtWidgets import QLayout
 
     from texlab.columns.arrangement import Words
     from texlab.state.scene import ColumnScene
@@ -157,19 +156,3 @@ class Foot(QWidget):
         if event.button() == Qt.MouseButton.LeftButton and child in self.figures:
             self.details_wanted.emit()
         event.accept()
-
-
-def body_frame(cell: QWidget, head: QLayout, foot: Foot, words: Words) -> Frame:
-    """Return what a cell with this head and foot shows around its picture."""
-    layout = cell.layout()
-    assert layout is not None
-    margins = layout.contentsMargins()
-    border = cell.contentsMargins()
-    width = margins.left() + margins.right() + border.left() + border.right()
-    height = margins.top() + margins.bottom() + border.top() + border.bottom()
-    height += max(head.sizeHint().height(), head.minimumSize().height()) + layout.spacing()
-    needed = foot.frame(words)
-    # Two pixels are left between picture and words.
-    if words == "beside":
-        return Frame(width + needed.width + 2, height)
-    return Frame(width, height + needed.height + 2, needed.least)

@@ -16,15 +16,26 @@ if TYPE_CHECKING:
 _Read = tuple[QValidator.State, str, int]
 
 
-def _plain_locale() -> QLocale:
+def _prepare(box: QSpinBox | QDoubleSpinBox) -> None:
     locale = QLocale(QLocale.Language.C)
     locale.setNumberOptions(QLocale.NumberOption.OmitGroupSeparator)
-    return locale
+    box.setLocale(locale)
+    box.setCorrectionMode(QAbstractSpinBox.CorrectionMode.CorrectToPreviousValue)
+    box.setKeyboardTracking(False)
 
 
-def _bare(box: QAbstractSpinBox, text: str, prefix: str, suffix: str) -> str:
-    """Return what was typed, without what the box itself writes around it."""
-    return text.strip().removeprefix(prefix.strip()).removesuffix(suffix.strip()).strip()
+def _typed(box: QSpinBox | QDoubleSpinBox, text: str) -> float | None:
+    """Return the number that was typed, without what the box itself writes around it; None for no number."""
+    bare = text.strip().removeprefix(box.prefix().strip()).removesuffix(box.suffix().strip()).strip()
+    return parse_number(bare)
+
+
+def _judged(box: QSpinBox | QDoubleSpinBox, value: float | None, text: str, position: int) -> _Read:
+    """Let anything be typed; only a number within the range is acceptable."""
+    if value is not None and box.minimum() <= value <= box.maximum():
+        return QValidator.State.Acceptable, text, position
+    # Never invalid: Qt would swallow the key, and "1.2.3" become 1.23.
+    return QValidator.State.Intermediate, text, position
 
 
 class NumberBox(QDoubleSpinBox):
@@ -35,24 +46,15 @@ class NumberBox(QDoubleSpinBox):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setLocale(_plain_locale())
-        self.setCorrectionMode(QAbstractSpinBox.CorrectionMode.CorrectToPreviousValue)
-        self.setKeyboardTracking(False)
+        _prepare(self)
 
     def validate(self, text: str, position: int) -> _Read:
         """Let anything be typed; only a number within the range is acceptable."""
-        typed = _bare(self, text, self.prefix(), self.suffix())
-        value = parse_number(typed)
-        if value is not None and self.minimum() <= value <= self.maximum():
-            state = QValidator.State.Acceptable
-        else:
-            # Never invalid: Qt would swallow the key, and "1.2.3" become 1.23.
-            state = QValidator.State.Intermediate
-        return state, text, position
+        return _judged(self, _typed(self, text), text, position)
 
     def valueFromText(self, text: str) -> float:
         """Return the number that was typed; the value of the box when it is none."""
-        value = parse_number(_bare(self, text, self.prefix(), self.suffix()))
+        value = _typed(self, text)
         return self.value() if value is None else value
 
     def fixup(self, text: str) -> str:
@@ -65,25 +67,20 @@ class WholeBox(QSpinBox):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setLocale(_plain_locale())
-        self.setCorrectionMode(QAbstractSpinBox.CorrectionMode.CorrectToPreviousValue)
-        self.setKeyboardTracking(False)
+        _prepare(self)
 
     def validate(self, text: str, position: int) -> _Read:
         """Let anything be typed; only a whole number within the range is acceptable."""
-        typed = _bare(self, text, self.prefix(), self.suffix())
-        value = parse_number(typed)
-        if value is not None and value == round(value) and self.minimum() <= value <= self.maximum():
-            state = QValidator.State.Acceptable
-        else:
-            # Never invalid: Qt would swallow the key, and "1.2.3" become 1.23.
-            state = QValidator.State.Intermediate
-        return state, text, position
+        return _judged(self, self._whole(text), text, position)
 
     def valueFromText(self, text: str) -> int:
         """Return the number that was typed; the value of the box when it is none."""
-        value = parse_number(_bare(self, text, self.prefix(), self.suffix()))
-        return self.value() if value is None or value != round(value) else round(value)
+        value = self._whole(text)
+        return self.value() if value is None else value
+
+    def _whole(self, text: str) -> int | None:
+        value = _typed(self, text)
+        return None if value is None or value != round(value) else round(value)
 
     def fixup(self, text: str) -> str:
         """Leave what was typed: Qt would take a decimal comma out of it and make another number."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
-from texlab.runs.worker import Worker
 from texlab.window.batch_dialog import BatchDialog, BatchRequest
+from texlab.window.run_dialog import RunDesk
 
 if TYPE_CHECKING:
     from texlab.runs.worker import Task
@@ -19,23 +18,15 @@ if TYPE_CHECKING:
     from texlab_core.batch.places import Place
     from texlab_core.batch.running import BatchResult
 
-# Processes end at their next step; one that loads or compiles takes longer.
-PATIENCE_S = 30.0
 
+class BatchDesk(RunDesk):
+    """Opens the dialog, and runs what it asks for."""
 
-class BatchDesk:
-    """Opens the dialog (made when it is first wanted), and runs what it asks for."""
+    dialog: BatchDialog | None = None
 
     def __init__(self, window: MainWindow, session: Session) -> None:
-        self._window = window
+        super().__init__(window, "batch", "Stopped; run it again to go on.")
         self._session = session
-        self.dialog: BatchDialog | None = None
-        self._worker: Worker | None = None
-
-    @property
-    def busy(self) -> bool:
-        """Whether a batch runs."""
-        return self._worker is not None and self._worker.busy
 
     def open(self) -> None:
         """Show the dialog."""
@@ -44,33 +35,13 @@ class BatchDesk:
             self.dialog.asked.connect(self._run)
             self.dialog.stopped.connect(self._stop)
             self.dialog.page_wanted.connect(lambda page: QDesktopServices.openUrl(QUrl.fromLocalFile(page)))
-        self.dialog.show()
-        self.dialog.raise_()
-
-    def close(self) -> None:
-        """Stop what runs, and wait for its end."""
-        if self._worker is not None:
-            self._worker.close(PATIENCE_S)
-            self._worker = None
-        if self.dialog is not None:
-            self.dialog.close()
+        self._show(self.dialog)
 
     def _run(self, asked: BatchRequest) -> None:
         dialog = self.dialog
         assert dialog is not None
-        if self._worker is None:
-            self._worker = Worker("batch", parent=self._window)
-            self._worker.progressed.connect(dialog.show_progress)
-            self._worker.finished.connect(dialog.show_result)
-            self._worker.failed.connect(dialog.show_idle)
-            self._worker.cancelled.connect(partial(dialog.show_idle, "Stopped; run it again to go on."))
-        dialog.show_running()
         data = None if asked.plan else plan_data(asked, self._session)
-        self._worker.submit(lambda task: run_request(task, asked, data))
-
-    def _stop(self) -> None:
-        if self._worker is not None:
-            self._worker.cancel()
+        self._submit(dialog, lambda task: run_request(task, asked, data), dialog.show_progress, dialog.show_result)
 
 
 def plan_data(asked: BatchRequest, session: Session) -> dict[str, Any]:

@@ -7,29 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import (
-    QComboBox,
-    QDialog,
-    QDialogButtonBox,
-    QFileDialog,
-    QFormLayout,
-    QHBoxLayout,
-    QLineEdit,
-    QPlainTextEdit,
-    QProgressBar,
-    QPushButton,
-    QWidget,
-)
+from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QPlainTextEdit
 
 from texlab.style.numbers import duration
 from texlab.widgets.number_box import WholeBox
-from texlab.widgets.plain import Label, set_tip
+from texlab.window.run_dialog import RunDialog, with_text
 
 if TYPE_CHECKING:
+    from PySide6.QtWidgets import QWidget
+
     from texlab_core.batch.running import BatchResult, Progress
 
 MOST_SEEDS = 1000
-_STEPS = 1000
 
 
 @dataclass(frozen=True)
@@ -63,20 +52,16 @@ class BatchRequest:
     processes: int
 
 
-class BatchDialog(QDialog):
-    """Asks what to run, and shows how far it is.
+class BatchDialog(RunDialog):
+    """Asks what to run (``asked(BatchRequest)``), and shows how far it is.
 
-    ``asked(BatchRequest)`` to begin, ``stopped()`` to stop, ``page_wanted(path)`` to look at the report.
+    ``page_wanted(path)`` to look at the report.
     """
 
-    asked = Signal(object)
-    stopped = Signal()
     page_wanted = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName("batch-dialog")
-        self.setWindowTitle("Run for many")
+        super().__init__("batch", "Run for many", "Reading the inputs ...", 420, parent)
         self.plan = QLineEdit()
         self.plan.setPlaceholderText("none: what is said below")
         self.inputs = QPlainTextEdit()
@@ -93,12 +78,6 @@ class BatchDialog(QDialog):
         self.processes.setRange(1, 256)
         # One core is left for the window.
         self.processes.setValue(max(1, (os.cpu_count() or 2) - 1))
-        self.bar = QProgressBar()
-        self.bar.setRange(0, _STEPS)
-        self.message = Label("")
-        self.message.setWordWrap(True)
-        self.message.setMinimumHeight(2 * self.fontMetrics().lineSpacing())
-        self.message.setMinimumWidth(420)
         self._page = ""
         self._lay_out()
         for edited in (
@@ -132,40 +111,9 @@ class BatchDialog(QDialog):
             ),
             ("Processes", self.processes, "processes", "How many work side by side", None),
         )
-        form = QFormLayout(self)
-        for label, widget, name, tip, ask in rows:
-            widget.setObjectName(f"batch-{name}")
-            widget.setAccessibleName(label)
-            set_tip(widget, tip)
-            if ask is None:
-                form.addRow(label, widget)
-                continue
-            button = QPushButton("Choose ...")
-            button.setObjectName(f"batch-{name}-choose")
-            button.setAutoDefault(False)
-            button.clicked.connect(lambda _=False, ask=ask: ask())
-            line = QHBoxLayout()
-            line.addWidget(widget, 1)
-            line.addWidget(button)
-            form.addRow(label, line)
-        self.bar.setObjectName("batch-bar")
-        self.bar.setAccessibleName("Progress")
-        self.message.setObjectName("batch-message")
-        buttons = QDialogButtonBox()
-        self.run_button = self._button(buttons, "Run", "batch-run", self._ask)
-        self.stop_button = self._button(buttons, "Stop", "batch-stop", self.stopped.emit)
-        self.page_button = self._button(buttons, "Open the report", "batch-page", self._want_page)
-        self.close_button = self._button(buttons, "Close", "batch-close", self.close)
-        form.addRow(self.bar)
-        form.addRow(self.message)
-        form.addRow(buttons)
-
-    def _button(self, box: QDialogButtonBox, text: str, name: str, call: object) -> QPushButton:
-        button = box.addButton(text, QDialogButtonBox.ButtonRole.ActionRole)
-        button.setObjectName(name)
-        button.setAutoDefault(False)
-        button.clicked.connect(lambda _=False: call())  # type: ignore[operator]
-        return button
+        for row in rows:
+            self.add_row(*row)
+        (self.page_button,) = self.add_end("Run", ("Open the report", "page", self._want_page))
 
     def request(self) -> BatchRequest:
         """Return what the fields say."""
@@ -179,26 +127,9 @@ class BatchDialog(QDialog):
             processes=self.processes.value(),
         )
 
-    def show_idle(self, sentence: str, *, page: str = "") -> None:
-        """Show that nothing runs, and why not, or what came of it."""
-        self._running = False
-        self._page = page or self._page
-        self.stop_button.setEnabled(False)
-        self.page_button.setEnabled(bool(self._page))
-        self.message.setText(sentence)
-        self._check()
-
-    def show_running(self) -> None:
-        """Show that it has begun."""
-        self._running = True
-        self.bar.setValue(0)
-        self.stop_button.setEnabled(True)
-        self.message.setText("Reading the inputs ...")
-        self._check()
-
     def show_progress(self, progress: Progress) -> None:
         """Show how far it is, and how long it will take."""
-        self.bar.setValue(int(progress.fraction * _STEPS))
+        self.show_share(progress.fraction)
         failed = f", {progress.failed} failed" if progress.failed else ""
         left = "" if progress.remaining_s is None else f", {duration(progress.remaining_s)} left"
         last = f"\n{progress.error}" if progress.error else ""
@@ -206,14 +137,15 @@ class BatchDialog(QDialog):
 
     def show_result(self, result: BatchResult) -> None:
         """Show what came of it."""
-        self.bar.setValue(_STEPS)
+        self.show_share(1.0)
+        self._page = str(result.page)
         found = f", {result.found} were done already" if result.found else ""
         failed = f", {result.failed} failed (the report says why)" if result.failed else ""
-        self.show_idle(
-            f"{result.made} textures in {duration(result.elapsed_s)}{found}{failed}.", page=str(result.page)
-        )
+        self.show_idle(f"{result.made} textures in {duration(result.elapsed_s)}{found}{failed}.")
 
     def _check(self) -> None:
+        super()._check()
+        self.page_button.setEnabled(bool(self._page))
         asked = self.request()
         complete = bool(asked.out and (asked.plan or (asked.inputs and asked.sizes)))
         self.run_button.setEnabled(complete and not self._running)
@@ -222,21 +154,17 @@ class BatchDialog(QDialog):
         for widget in (self.plan, self.out, self.processes):
             widget.setEnabled(not self._running)
 
-    def _ask(self) -> None:
-        self.asked.emit(self.request())
-
     def _want_page(self) -> None:
         self.page_wanted.emit(self._page)
 
     def _ask_plan(self) -> None:
-        path, _ = QFileDialog.getOpenFileName(self, "Plan", "", "Plans (*.json *.toml);;All files (*)")
-        if path:
-            self.plan.setText(path)
+        with_text(
+            self.plan, QFileDialog.getOpenFileName(self, "Plan", "", "Plans (*.json *.toml);;All files (*)")[0]
+        )
 
     def _ask_folder(self) -> None:
         if path := QFileDialog.getExistingDirectory(self, "Folder of images"):
             self.inputs.appendPlainText(path)
 
     def _ask_out(self) -> None:
-        if path := QFileDialog.getExistingDirectory(self, "Folder for the results"):
-            self.out.setText(path)
+        with_text(self.out, QFileDialog.getExistingDirectory(self, "Folder for the results"))

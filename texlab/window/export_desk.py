@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,8 +10,8 @@ from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 
 from texlab.runs.column_run import job_of
-from texlab.runs.worker import Worker
 from texlab.window.export_dialog import ExportDialog, ExportRequest
+from texlab.window.run_dialog import RunDesk
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 
@@ -27,25 +26,19 @@ if TYPE_CHECKING:
     from texlab_core.sheets.export import Export, Item
     from texlab_core.sheets.figure import Figure
 
-PATIENCE_S = 30.0
 _BITS: dict[str, Bits | None] = {"": None, "8": 8, "16": 16, "float": "float"}
 
 
-class ExportDesk:
-    """Opens the dialog (made when it is first wanted), and carries out what it asks for."""
+class ExportDesk(RunDesk):
+    """Opens the dialog, and carries out what it asks for."""
+
+    dialog: ExportDialog | None = None
 
     def __init__(self, window: MainWindow, settings: Settings, controller: Controller) -> None:
-        self._window = window
+        super().__init__(window, "export", "Stopped; nothing was written.")
         self._settings = settings
         self._controller = controller
-        self.dialog: ExportDialog | None = None
-        self._worker: Worker | None = None
         self.written: tuple[Path, ...] = ()
-
-    @property
-    def busy(self) -> bool:
-        """Whether an export runs."""
-        return self._worker is not None and self._worker.busy
 
     def open(self) -> None:
         """Show the dialog with the columns that there are now."""
@@ -62,16 +55,7 @@ class ExportDesk:
             (each.id, f"{place}. {find_method(each.method).title}") for place, each in enumerate(state.columns, 1)
         ]
         self.dialog.set_columns(columns, self._controller.session.selected_id)
-        self.dialog.show()
-        self.dialog.raise_()
-
-    def close(self) -> None:
-        """Stop what runs, and wait for its end."""
-        if self._worker is not None:
-            self._worker.close(PATIENCE_S)
-            self._worker = None
-        if self.dialog is not None:
-            self.dialog.close()
+        self._show(self.dialog)
 
     def _foresee(self, asked: ExportRequest) -> None:
         """Show the names that a request would give, or why it cannot be carried out."""
@@ -88,12 +72,6 @@ class ExportDesk:
     def _run(self, asked: ExportRequest) -> None:
         dialog = self.dialog
         assert dialog is not None
-        if self._worker is None:
-            self._worker = Worker("export", parent=self._window)
-            self._worker.progressed.connect(dialog.show_progress)
-            self._worker.finished.connect(self._done)
-            self._worker.failed.connect(dialog.show_idle)
-            self._worker.cancelled.connect(partial(dialog.show_idle, "Stopped; nothing was written."))
         try:
             items = self._items(asked)
         except InputError as error:
@@ -101,19 +79,14 @@ class ExportDesk:
             return
         folder = asked.out if asked.kind == "files" else str(Path(asked.out).parent)
         self._settings.values["save-folder"] = folder
-        dialog.show_running()
-        self._worker.submit(lambda task: carry_out(asked, items, task))
+        self._submit(dialog, lambda task: carry_out(asked, items, task), dialog.show_share, self._done)
 
     def _done(self, written: tuple[Path, ...]) -> None:
         assert self.dialog is not None
         self.written = written
-        self.dialog.show_progress(1.0)
+        self.dialog.show_share(1.0)
         what = str(written[0]) if len(written) == 1 else f"{len(written)} files in {written[0].parent}"
         self.dialog.show_idle(f"Written: {what}.", written=True)
-
-    def _stop(self) -> None:
-        if self._worker is not None:
-            self._worker.cancel()
 
     def _show_folder(self) -> None:
         if self.written:

@@ -6,27 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import (
-    QComboBox,
-    QDialog,
-    QDialogButtonBox,
-    QFileDialog,
-    QFormLayout,
-    QHBoxLayout,
-    QLineEdit,
-    QListWidget,
-    QListWidgetItem,
-    QProgressBar,
-    QPushButton,
-    QWidget,
-)
+from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QListWidget, QListWidgetItem, QWidget
 
 from texlab.widgets.number_box import WholeBox
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import Label
+from texlab.window.run_dialog import RunDialog, with_text
 from texlab_core.sheets.export_names import FIELDS, PATTERN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
 Kind = Literal["files", "figure", "animation"]
 KINDS: tuple[tuple[Kind, str], ...] = (
@@ -44,7 +32,6 @@ FORMATS = {
 }
 BITS = {"as the exemplar": "", "8 bits": "8", "16 bits": "16", "floats": "float"}
 RECIPES = {"inside, where the format holds it": "inside", "beside each file": "beside", "nowhere": "none"}
-_STEPS = 1000
 _SHOWN = 4
 
 
@@ -88,24 +75,18 @@ class ExportRequest:
     rate: int = 12
 
 
-class ExportDialog(QDialog):
-    """Asks what to export, shows the names beforehand, then how far it is.
+class ExportDialog(RunDialog):
+    """Asks what to export (``asked(ExportRequest)``), shows the names beforehand, then how far it is.
 
-    ``asked(ExportRequest)`` to begin, ``edited(ExportRequest)`` when a field changes, ``stopped()`` to stop,
-    ``folder_wanted()`` and ``path_wanted()`` for what was written.
+    ``edited(ExportRequest)`` when a field changes, ``folder_wanted()`` and ``path_wanted()`` for what was written.
     """
 
-    asked = Signal(object)
     edited = Signal(object)
-    stopped = Signal()
     folder_wanted = Signal()
     path_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName("export-dialog")
-        self.setWindowTitle("Export")
-        self._running = False
+        super().__init__("export", "Export", "Making the results ...", 460, parent)
         self._written = False
         self._sound = False
         self.kind = _box([text for _, text in KINDS])
@@ -128,12 +109,6 @@ class ExportDialog(QDialog):
         self.names.setWordWrap(True)
         self.names.setMinimumHeight((_SHOWN + 1) * self.fontMetrics().lineSpacing())
         self.names.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.bar = QProgressBar()
-        self.bar.setRange(0, _STEPS)
-        self.message = Label("")
-        self.message.setWordWrap(True)
-        self.message.setMinimumSize(460, 2 * self.fontMetrics().lineSpacing())
-        self._form = QFormLayout(self)
         self._lay_out()
         self._connect()
         self.show_idle("")
@@ -172,37 +147,17 @@ class ExportDialog(QDialog):
         )
 
     def _lay_out(self) -> None:
-        form = self._form
         for label, widget, name, tip, _ in self._rows():
-            widget.setObjectName(f"export-{name}")
-            widget.setAccessibleName(label)
-            set_tip(widget, tip)
-            form.addRow(label, widget)
-        self.out.setObjectName("export-out")
-        self.out.setAccessibleName("Write to")
-        set_tip(self.out, "A folder, or a name that ends in .pdf, .svg, .webp, .gif, .apng or .mp4")
-        choose = QPushButton("Choose ...")
-        choose.setObjectName("export-out-choose")
-        choose.setAutoDefault(False)
-        choose.clicked.connect(self._ask_out)
-        line = QHBoxLayout()
-        line.addWidget(self.out, 1)
-        line.addWidget(choose)
-        form.addRow("Write to", line)
+            self.add_row(label, widget, name, tip)
+        tip = "A folder, or a name that ends in .pdf, .svg, .webp, .gif, .apng or .mp4"
+        self.add_row("Write to", self.out, "out", tip, self._ask_out)
         self.names.setObjectName("export-names")
-        self.bar.setObjectName("export-bar")
-        self.bar.setAccessibleName("Progress")
-        self.message.setObjectName("export-message")
-        form.addRow("Will be", self.names)
-        form.addRow(self.bar)
-        form.addRow(self.message)
-        buttons = QDialogButtonBox()
-        self.run_button = _button(buttons, "Export", "export-run", lambda: self.asked.emit(self.request()))
-        self.stop_button = _button(buttons, "Stop", "export-stop", self.stopped.emit)
-        self.folder_button = _button(buttons, "Show in folder", "export-folder", self.folder_wanted.emit)
-        self.path_button = _button(buttons, "Copy path", "export-path", self.path_wanted.emit)
-        self.close_button = _button(buttons, "Close", "export-close", self.close)
-        form.addRow(buttons)
+        self.form.addRow("Will be", self.names)
+        self.folder_button, self.path_button = self.add_end(
+            "Export",
+            ("Show in folder", "folder", self.folder_wanted.emit),
+            ("Copy path", "path", self.path_wanted.emit),
+        )
 
     def _connect(self) -> None:
         self.kind.currentIndexChanged.connect(self._show_rows)
@@ -219,7 +174,7 @@ class ExportDialog(QDialog):
     def _show_rows(self) -> None:
         kind = self._kind()
         for _, widget, _, _, kinds in self._rows():
-            self._form.setRowVisible(widget, kind in kinds)
+            self.form.setRowVisible(widget, kind in kinds)
 
     def _kind(self) -> Kind:
         return KINDS[self.kind.currentIndex()][0]
@@ -284,40 +239,30 @@ class ExportDialog(QDialog):
 
     def show_idle(self, sentence: str, *, written: bool = False) -> None:
         """Show that nothing runs, and why not, or what came of it."""
-        self._running = False
         self._written = self._written or written
-        self.message.setText(sentence)
-        self._check()
+        super().show_idle(sentence)
 
     def show_running(self) -> None:
         """Show that it has begun."""
-        self._running, self._written = True, False
-        self.bar.setValue(0)
-        self.message.setText("Making the results ...")
-        self._check()
-
-    def show_progress(self, share: float) -> None:
-        """Show how far it is, 0 to 1."""
-        self.bar.setValue(int(share * _STEPS))
+        self._written = False
+        super().show_running()
 
     def _check(self) -> None:
+        super()._check()
         self.run_button.setEnabled(self._sound and not self._running)
-        self.stop_button.setEnabled(self._running)
         self.folder_button.setEnabled(self._written)
         self.path_button.setEnabled(self._written)
 
     def _ask_out(self) -> None:
         kind = self._kind()
         if kind == "files":
-            path = QFileDialog.getExistingDirectory(self, "Folder for the files", self.out.text())
-        else:
-            kinds = {
-                "figure": "PDF (*.pdf);;SVG (*.svg)",
-                "animation": "WebP (*.webp);;GIF (*.gif);;APNG (*.apng);;MP4 (*.mp4)",
-            }[kind]
-            path, _ = QFileDialog.getSaveFileName(self, "Export", self.out.text(), kinds)
-        if path:
-            self.out.setText(path)
+            with_text(self.out, QFileDialog.getExistingDirectory(self, "Folder for the files", self.out.text()))
+            return
+        kinds = {
+            "figure": "PDF (*.pdf);;SVG (*.svg)",
+            "animation": "WebP (*.webp);;GIF (*.gif);;APNG (*.apng);;MP4 (*.mp4)",
+        }[kind]
+        with_text(self.out, QFileDialog.getSaveFileName(self, "Export", self.out.text(), kinds)[0])
 
 
 def _box(texts: object) -> QComboBox:
@@ -332,11 +277,3 @@ def _number(low: int, high: int, value: int, none: str = "") -> WholeBox:
     box.setValue(value)
     box.setSpecialValueText(none)
     return box
-
-
-def _button(box: QDialogButtonBox, text: str, name: str, call: Callable[[], object]) -> QPushButton:
-    button = box.addButton(text, QDialogButtonBox.ButtonRole.ActionRole)
-    button.setObjectName(name)
-    button.setAutoDefault(False)
-    button.clicked.connect(lambda _=False: call())
-    return button
