@@ -7,14 +7,14 @@ import pytest
 
 from tests.gui.dock_scenes import column_of
 from texlab.columns.status import details, figures, numbers_of, status_parts
-from texlab.runs.column_run import BROKEN, SOLID, ColumnRun, Measured, MeasureRun
+from texlab.runs.column_run import SOLID, ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled
-from texlab_core.findings.registry import find_all
+from texlab_core.findings.registry import Detector, find_all
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.measures.registry import measure_all, measure_quick
+from texlab_core.measures.registry import Measure, measure_all, measure_quick
 from texlab_core.measures.subject import PreparedCache, Subject
 
 
@@ -98,12 +98,26 @@ def test_measuring_stops_at_any_question():
 
 
 def test_a_measure_that_fails_leaves_the_picture_as_it_is(monkeypatch, caplog):
-    monkeypatch.setattr("texlab_core.measures.registry.measure_quick", lambda subject: 1 / 0)
-    found = measuring(run(job()))(Task())
+    result = run(job())
+    whole = measuring(result)(Task())
+    monkeypatch.setattr(Measure, "of", fails_for(Measure.of, "visual-difference"))
+    monkeypatch.setattr(Detector, "examine", fails_for(Detector.examine, whole.findings[0].id))
+    found = measuring(result)(Task())
     assert isinstance(found, Measured)
-    assert found.measures == {}
-    assert "ZeroDivisionError" in caplog.text
-    assert (found.findings, found.unexamined) == (None, BROKEN)
+    assert found.measures.keys() == whole.measures.keys() - {"visual-difference"}
+    assert found.findings == whole.findings[1:]
+    assert "The measure visual-difference of texlab failed; it is left out." in caplog.text
+    assert f"The detector {whole.findings[0].id} of texlab failed; it is left out." in caplog.text
+    assert "TypeError" in caplog.text
+
+
+def fails_for(method, name):
+    """Return a method that fails for one of the registered things only."""
+
+    def failing(self, given):
+        return method(self, given / 0 if self.id == name else given)
+
+    return failing
 
 
 def test_what_cannot_be_examined_is_told_from_what_has_no_fault():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.stub_method import StubParams, analyses, exemplar, stub  # noqa: F401
-from texlab.runs.column_run import Drafted, Finished, Measured, Progress, Waits
+from texlab.runs.column_run import BROKEN, Drafted, Finished, Measured, Progress, Waits
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.sweep_run import SweepRun, sweep_of
@@ -148,6 +148,17 @@ def test_every_report_is_shown(runner: Any) -> None:
     runner._failed("Too small.")
     assert (runner.scene.status, runner.scene.message, runner.scene.picture) == ("failed", "Too small.", None)
     assert len(changes) == 6
+
+
+def test_a_picture_that_cannot_be_measured_stays(runner: Any, caplog: pytest.LogCaptureFixture) -> None:
+    start(runner)
+    end = finished((96, 128), 0.01)
+    runner._finished(end)
+    assert runner.measuring
+    runner._failed("There is not enough memory for this size.")
+    assert (runner.scene.status, runner.scene.result, runner.measuring) == ("finished", end.result, False)
+    assert runner.scene.unexamined == BROKEN
+    assert "could not be measured: There is not enough memory" in caplog.text
 
 
 def test_where_another_exemplar_stood_is_no_place_to_go_on_from(runner: Any) -> None:

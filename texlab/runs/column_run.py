@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
@@ -28,8 +27,6 @@ if TYPE_CHECKING:
     from texlab_core.warming import Need, Warmth
 
     Keep = Callable[[], Mapping[str, Any]]
-
-log = logging.getLogger(__name__)
 
 MAX_FRAME_BYTES = 96 * 2**20
 SOLID = "A solid is not examined: findings are about pictures. A slice can be exported and examined."
@@ -193,7 +190,7 @@ class MeasureRun:
     draft: bool
 
     def __call__(self, task: TaskLike) -> Measured:
-        """Measure, reporting the quick numbers first; a measure that fails leaves the picture as it is."""
+        """Measure, reporting the quick numbers first."""
         from texlab_core.findings.registry import find_all, unexamined
         from texlab_core.measures.registry import measure_all, measure_quick, measures
         from texlab_core.measures.subject import Subject
@@ -207,25 +204,16 @@ class MeasureRun:
         if self.result is not None:
             subject = replace(Subject.of_result(self.result, self.cache), look=look)
         size = (self.image.shape[0], self.image.shape[1])
-        found: dict[str, float] = {}
-        findings: tuple[Finding, ...] | None = None
-        why = ""
-        try:
-            found = measure_quick(subject)
-            if not self.draft:
-                task.progress(Measured(dict(found), size))
-                rest = (each.id for each in measures().values() if not (each.slow or each.live))
-                found |= measure_all(subject, rest)
-                task.progress(Measured(dict(found), size))
-                if self.result is not None:
-                    why = SOLID if self.result.volume is not None else unexamined(subject)
-                    findings = None if why else find_all(subject, self.result.job.params)
-        except Cancelled:
-            raise
-        except Exception:
-            log.exception("A picture could not be measured.")
-            why = BROKEN
-        return Measured(found, size, findings, why)
+        found = measure_quick(subject)
+        if self.draft:
+            return Measured(found, size)
+        task.progress(Measured(dict(found), size))
+        found |= measure_all(subject, (each.id for each in measures().values() if not (each.slow or each.live)))
+        task.progress(Measured(dict(found), size))
+        if self.result is None:
+            return Measured(found, size)
+        why = SOLID if self.result.volume is not None else unexamined(subject)
+        return Measured(found, size, None if why else find_all(subject, self.result.job.params), why)
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import logging
 import math
 import time
 from functools import partial
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.column_run import (
+    BROKEN,
     ColumnRun,
     Drafted,
     DraftRun,
@@ -40,6 +42,8 @@ if TYPE_CHECKING:
     from texlab.style.pictures import Picture
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
+
+log = logging.getLogger(__name__)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -323,6 +327,12 @@ class ColumnRunner(QObject):
         self._show(**changes)
 
     def _failed(self, sentence: str) -> None:
+        if self._measuring:
+            # The picture is there all the same.
+            log.warning("A picture could not be measured: %s", sentence)
+            self._measuring = False
+            self._show(unexamined=BROKEN)
+            return
         self._live = False
         self._show(status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Shelf, own_modules
+from texlab_core.errors import Cancelled
 from texlab_core.findings.finding import LOOK_AT, Finding, Remedy, Where
 from texlab_core.findings.limits import rule_for
 from texlab_core.measures.registry import find_measure
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
     from texlab_core.findings.finding import Certainty
     from texlab_core.findings.limits import Rule
     from texlab_core.measures.subject import Subject
+
+log = logging.getLogger(__name__)
 
 OTHER = ""
 # Smaller pictures and exemplars are not examined: limits come from sides of 128 and 256 pixels.
@@ -199,8 +203,20 @@ def unexamined(subject: Subject) -> str:
     return ""
 
 
+def _tried(detector: Detector, case: Case) -> Finding | None:
+    try:
+        return detector.examine(case)
+    except Cancelled:
+        raise
+    except Exception:
+        log.exception("The detector %s of %s failed; it is left out.", detector.id, detector.package)
+        return None
+
+
 def find_all(subject: Subject, params: Params | None = None, method: str | None = None) -> tuple[Finding, ...]:
     """Return everything that is wrong with a result, the certain things first, then hints, each in their order.
+
+    A detector that fails is left out, which is logged.
 
     Parameters
     ----------
@@ -222,7 +238,7 @@ def find_all(subject: Subject, params: Params | None = None, method: str | None 
     found = []
     for each in detectors().values():
         subject.look()
-        finding = each.examine(case)
+        finding = _tried(each, case)
         if finding is not None:
             found.append(finding)
     return tuple(sorted(found, key=lambda finding: finding.certainty == LOOK_AT))

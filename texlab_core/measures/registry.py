@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from texlab_core.engine.plugins import OWN_PACKAGE, Failure, Shelf, own_modules
 from texlab_core.engine.registry import methods
+from texlab_core.errors import Cancelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from texlab_core.measures.subject import Subject
+
+log = logging.getLogger(__name__)
 
 Better = Literal["lower", "higher", "neither"]
 Need = Literal["exemplar", "source", "counts", "curves", "model", "method"]
@@ -155,7 +159,7 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
         What to measure.
     ids
         Which measures; None takes all but the slow ones, and what the method says under names of its own. Those
-        that the subject lacks something for are left out.
+        that the subject lacks something for are left out, and so are those that fail, which is logged.
 
     Raises
     ------
@@ -169,10 +173,21 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
     found: dict[str, float] = {}
     for measure in known.values():
         if measure.id in wanted if wanted is not None else not measure.slow:
-            value = measure.of(subject)
+            value = _tried(measure, subject)
             if value is not None:
                 found[measure.id] = value
     return found if ids is not None else found | _unknown(subject)
+
+
+def _tried(measure: Measure, subject: Subject) -> float | None:
+    try:
+        return measure.of(subject)
+    except Cancelled:
+        raise
+    except Exception:
+        # One that fails, of another package perhaps, takes neither the picture nor the other numbers with it.
+        log.exception("The measure %s of %s failed; it is left out.", measure.id, measure.package)
+        return None
 
 
 def measure_quick(subject: Subject) -> dict[str, float]:
