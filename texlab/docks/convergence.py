@@ -179,9 +179,7 @@ class ConvergenceDock(FramedDock):
 
     def paint_theme(self, theme: Theme) -> None:
         """Give plots, legend and heat map their colours."""
-        for plot in (self.plot, self.all):
-            plot.set_theme(theme)
-        self.heat.set_theme(theme)
+        super().paint_theme(theme)
         self._write_legend()
 
     def question(self, scene: Scene) -> Question | None:

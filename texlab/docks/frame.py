@@ -27,7 +27,7 @@ from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import Readout
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
@@ -86,8 +86,8 @@ class LookedAt:
 class FramedDock(Dock):
     """A dock with a line of controls above its body.
 
-    Subclasses fill ``self.body`` in ``build``, add controls with ``add_...``, show an answer in ``show_answer``
-    and repaint in ``paint_theme``. A ``question`` that returns None leaves its reason in ``self.why``.
+    Subclasses fill ``self.body`` in ``build``, add controls with ``add_...`` and show an answer in
+    ``show_answer``. A ``question`` that returns None leaves its reason in ``self.why``.
     """
 
     empty: ClassVar[str] = "Nothing to show yet."
@@ -142,7 +142,9 @@ class FramedDock(Dock):
         raise NotImplementedError
 
     def paint_theme(self, theme: Theme) -> None:
-        """Give every plot and picture its colours."""
+        """Give every plot and picture of the body its colours."""
+        for part in _themed(self.body):
+            part.set_theme(theme)
 
     def looked_at(self, scene: Scene) -> LookedAt:
         """Return what to look at in the chosen column, and say so when that is a stage of its run."""
@@ -240,6 +242,15 @@ class FramedDock(Dock):
     def add_readout(self) -> Readout:
         """Add the place where the value under the cursor is told, over the body's lower right corner."""
         return Readout(f"{self.name}-readout", self.body)
+
+
+def _themed(widget: QWidget) -> Iterator[Any]:
+    """Yield what has colours of its own inside a widget; each gives them to the parts inside itself."""
+    for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
+        if hasattr(child, "set_theme"):
+            yield child
+        else:
+            yield from _themed(child)
 
 
 def replace_items(box: QComboBox, items: list[tuple[str, Any]]) -> None:

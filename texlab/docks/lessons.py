@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.documents.lessons import Lesson, LessonStep
 
 SENTENCE = "A step of my own."
@@ -261,10 +260,6 @@ class LessonsDock(FramedDock):
             value = step.series.values[place]
             self._tell_value(value)
             self.intention.emit(EditField(self._lesson.column_id, step.series.parameter, value))
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Repaint in another theme."""
-        self.pane.set_theme(theme)
 
 
 def shelf(folder: Path | None) -> tuple[list[tuple[str, bool, Lesson]], tuple[str, ...]]:

@@ -137,8 +137,7 @@ class MapsDock(FramedDock):
 
     def paint_theme(self, theme: Theme) -> None:
         """Give panes and bar their colours."""
-        for each in (self.pane, self.key, self.bar):
-            each.set_theme(theme)
+        super().paint_theme(theme)
         self.mark.setPen(pg.mkPen("#000000", width=2))
 
     def question(self, scene: Scene) -> Question | None:

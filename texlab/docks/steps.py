@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QHideEvent, QKeyEvent
 
     from texlab.state.scene import Frame, Scene
-    from texlab.style.theme import Theme
 
 SPEEDS = ((1, "1 per second"), (2, "2 per second"), (4, "4 per second"), (10, "10 per second"))
 
@@ -66,10 +65,6 @@ class StepsDock(FramedDock):
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self.pane)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the pane its colours."""
-        self.pane.set_theme(theme)
 
     def show_scene(self, scene: Scene) -> None:
         """Stand where the other tabs look: at a stage, or at the end when they look at the result again."""

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
     from texlab_core.stats.bands import Band
     from texlab_core.transforms.steerable import BandKey
@@ -126,12 +125,6 @@ class HistogramsDock(FramedDock):
         layout.addWidget(plots, 1)
         layout.addWidget(self.table, 0, Qt.AlignmentFlag.AlignTop)
         self._source_changed(quietly=True)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give plots and table their colours."""
-        for plot in self.plots:
-            plot.set_theme(theme)
-        self.table.set_theme(theme)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the distributions of the chosen values in the exemplar and the chosen column."""

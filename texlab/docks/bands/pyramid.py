@@ -133,8 +133,7 @@ class PyramidDock(FramedDock):
 
     def paint_theme(self, theme: Theme) -> None:
         """Give every part its colours; the mosaics are drawn again for theirs."""
-        for part in (self.exemplar, self.result, self.detail, self.original, self.reconstruction):
-            part.set_theme(theme)
+        super().paint_theme(theme)
         if self.answer is not None:
             self.ask()
 

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from texlab.docks.explain.base import Explainer, ExplanationView
     from texlab.state.scene import ColumnScene, Probe, Scene
     from texlab.style.pictures import Mark
-    from texlab.style.theme import Theme
 
 INVITATION = "Point at a pixel of a result to see why it is there; click it to keep it."
 
@@ -65,11 +64,6 @@ class ExplainDock(FramedDock):
         self.add_control(self.state, "state", "Which pixel", "The column and the pixel that are explained")
         self._pages = QStackedLayout(self.body)
         self._show_probe(None, None)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the views their colours."""
-        for view in self._views.values():
-            view.set_theme(theme)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask about the pixel under the pointer."""

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import Scene
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
 
 METHOD = "efros-leung"
@@ -125,11 +124,6 @@ class FillDock(FramedDock):
             self.canvases["mask"].show_image(picture)
             self.canvases["region"].show_image(exemplar_picture)
         self._update()
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the canvases their colours."""
-        for canvas in self.canvases.values():
-            canvas.set_theme(theme)
 
     def _target_changed(self) -> None:
         for key, canvas in self.canvases.items():

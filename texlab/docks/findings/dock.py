@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab_core.findings.finding import Finding
 
 
@@ -96,10 +95,6 @@ class FindingsDock(FramedDock):
         layout.addWidget(middle, 2)
         layout.addWidget(self.pane, 1)
         self._show_chosen()
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the pane its colours."""
-        self.pane.set_theme(theme)
 
     def show_scene(self, scene: Scene) -> None:
         """Show numbers before and after as far as they are there."""

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab.widgets.mime import Brought
     from texlab_core.engine.inputs import Crop, Input
 
@@ -102,11 +101,6 @@ class InputsDock(FramedDock):
         menu = QMenu(button)
         menu.aboutToShow.connect(partial(fill, menu))
         button.setMenu(menu)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the pictures their colours."""
-        self.source.set_theme(theme)
-        self.used.set_theme(theme)
 
     @property
     def spec(self) -> InputSpec | None:

@@ -10,11 +10,10 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.frame import replace_items, shown_image
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import MARGINS, LabPage, Pictures, Shown
 from texlab.docks.recent import Recent, Same
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
-from texlab.widgets.plain import Label
 from texlab.widgets.plots import Plot
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.stats.equalization import Equalization, Ties
 
 LEVELS, ORIENTATIONS = 3, 4
@@ -115,18 +113,10 @@ class EqualizePage(LabPage):
         self.plots[0].left.connect(self._let_go)
         self.pictures.hovered.connect(self._hover)
         row.addWidget(self.pictures, 5)
-        self.words = Label("")
-        self.words.setWordWrap(True)
         column = QVBoxLayout(self.body)
-        column.setContentsMargins(6, 0, 6, 6)
+        column.setContentsMargins(*MARGINS)
         column.addLayout(row, 1)
-        column.addWidget(self.words)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give plots and panes their colours."""
-        for plot in self.plots:
-            plot.set_theme(theme)
-        self.pictures.set_theme(theme)
+        column.addWidget(self.make_words())
 
     def show_scene(self, scene: Scene) -> None:
         """List what there is to choose from."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QHBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
+from texlab.docks.lab.page import MARGINS, LabPage, Pictures, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import enlarged, gray, signed
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
 
 _SIDE = 128
 
@@ -76,14 +75,9 @@ class FiltersPage(LabPage):
         self.details.hovered.connect(lambda *at: self.readout.setText(self.details.told(*at)))
         self._number = 2
         row = QHBoxLayout(self.body)
-        row.setContentsMargins(6, 0, 6, 6)
+        row.setContentsMargins(*MARGINS)
         row.addWidget(self.pictures, 4)
         row.addWidget(self.details, 1)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
-        self.details.set_theme(theme)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the responses of the exemplar."""

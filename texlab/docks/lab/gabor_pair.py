@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
+from texlab.docks.lab.page import LabPage, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import enlarged, gray, hues, signed
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.stats.local_frequency import Plane
 
 VIEWS = (("One pair", "pair"), ("Local frequency", "local"))
@@ -46,26 +44,13 @@ class GaborPairPage(LabPage):
         self.wavelength = self.add_real("wavelength", "wavelength", tip, (SHORTEST, LONGEST, 0.5), self.ask, " px")
         self.wavelength.setValue(8)
         tip = "Orientation of the wave: 0° for vertical stripes, 90° for horizontal ones"
-        self.orientation = self.add_number("orientation", "orientation", tip, (0, 179), self.ask)
-        self.orientation.setSuffix("°")
-        self.orientation.setWrapping(True)
+        self.orientation = self.add_angle("orientation", "orientation", tip, (0, 179), 0, self.ask)
         tip = "Deviation of the Gaussian in wavelengths; a wide one tells frequencies better and places worse"
         self.sigma = self.add_real("sigma", "sigma", tip, (0.25, 2, 0.05), self.ask, " waves")
         self.sigma.setValue(0.5)
         tip = "Phase of the symmetric kernel's cosine: 90° makes it the antisymmetric one"
-        self.phase = self.add_number("phase", "phase", tip, (0, 359), self.ask)
-        self.phase.setSuffix("°")
-        self.phase.setWrapping(True)
-        self.readout = self.add_readout()
-        self.pictures = Pictures("lab-gabor-pictures", 7, linked=False)
-        self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
+        self.phase = self.add_angle("phase", "phase", tip, (0, 359), 0, self.ask)
+        self.lay_out(7, linked=False)
 
     def _view_changed(self) -> None:
         pair = self.view.currentData() == "pair"

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown, looker
+from texlab.docks.lab.page import LabPage, Shown, Told, looker
 from texlab.style.pictures import to_picture
-from texlab.widgets.plain import Label
 from texlab_core.shape import exercises, homogeneity, points
 from texlab_core.shape.orientation import Orientation
 from texlab_core.shape.sheets import TRUTH, landscape_picture, points_picture
@@ -21,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
 
 EXPERIMENTS = (
     ("1 Poisson, orthographic", "orthographic"),
@@ -33,14 +29,6 @@ EXPERIMENTS = (
 _TILTS, _TRIALS, _SAMPLES, _SETS = 12, 24, 21, 6
 
 
-@dataclass(frozen=True, eq=False)
-class PanelAnswer:
-    """Pictures, and what they say."""
-
-    shown: tuple[Shown, ...]
-    words: str
-
-
 class HomogeneityPage(LabPage):
     """Shows four experiments with points on a plane, and exercise 3."""
 
@@ -50,41 +38,21 @@ class HomogeneityPage(LabPage):
 
     def build(self) -> None:
         """Make the controls and the pictures."""
-        self._seed = 0
         self.kind = self.add_choice("kind", "Experiment", "Which experiment", EXPERIMENTS, self.ask)
-        self.slant = self.add_number("slant", "slant", "Slant of the plane", (0, 75), self.ask)
-        self.slant.setSuffix("°")
-        self.slant.setValue(50)
-        self.tilt = self.add_number("tilt", "tilt", "Tilt of the plane", (0, 359), self.ask)
-        self.tilt.setSuffix("°")
-        self.tilt.setWrapping(True)
-        self.tilt.setValue(60)
+        self.slant = self.add_angle("slant", "slant", "Slant of the plane", (0, 75), 50, self.ask)
+        self.tilt = self.add_angle("tilt", "tilt", "Tilt of the plane", (0, 359), 60, self.ask)
         self.count = self.add_number("points", "points", "Points in the picture", (50, 2000), self.ask)
         self.count.setSingleStep(50)
         self.count.setValue(400)
-        self.again = self.add_button("again", "Other points", "Draw other points of the same kind", self._again)
-        self.pictures = Pictures("lab-homogeneity-pictures", 4, linked=False)
-        self.words = Label("")
-        self.words.setWordWrap(True)
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures, 1)
-        layout.addWidget(self.words)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
-
-    def _again(self) -> None:
-        self._seed += 1
-        self.ask()
+        self.add_again("Other points", "Draw other points of the same kind")
+        self.lay_out(4, linked=False, words=True, readout=False)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the experiment; it needs no exemplar."""
-        kind, count, seed = self.kind.currentData(), self.count.value(), self._seed
+        kind, count, seed = self.kind.currentData(), self.count.value(), self.seed
         truth = Orientation(self.slant.value(), self.tilt.value())
 
-        def compute(should_stop: Callable[[], bool]) -> PanelAnswer:
+        def compute(should_stop: Callable[[], bool]) -> Told:
             rng = np.random.default_rng(seed)
             if kind in ("orthographic", "border"):
                 return poisson_panel(truth, count, rng, should_stop, at_border=kind == "border")
@@ -94,7 +62,7 @@ class HomogeneityPage(LabPage):
 
         return Question((kind, count, seed, truth), compute)
 
-    def show_answer(self, answer: PanelAnswer) -> None:
+    def show_answer(self, answer: Told) -> None:
         """Show pictures and words."""
         self.pictures.show_pictures(answer.shown)
         self.words.setText(answer.words)
@@ -102,7 +70,7 @@ class HomogeneityPage(LabPage):
 
 def poisson_panel(
     truth: Orientation, count: int, rng: np.random.Generator, should_stop: Callable[[], bool], *, at_border: bool
-) -> PanelAnswer:
+) -> Told:
     """Return a slanted and a frontal pattern beside each other, with the unevenness of every hypothesis."""
     look = looker(should_stop)
     shown = []
@@ -134,10 +102,10 @@ def poisson_panel(
             f"{chosen.count(0)} times of {_TILTS} that are tried ({_TRIALS / _TILTS:.0f} by chance); a long "
             f"rectangle holds {along / max(across, 1):.2f} times as many points along the tilt as across it."
         )
-    return PanelAnswer(tuple(shown), words)
+    return Told(tuple(shown), words)
 
 
-def marks_panel(truth: Orientation, count: int, rng: np.random.Generator) -> PanelAnswer:
+def marks_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Told:
     """Return ellipses on a plane, and the orientation from their mean shape."""
     places, tensors = homogeneity.random_marks(count, truth, rng)
     found = homogeneity.orientation_of_marks(tensors)
@@ -148,10 +116,10 @@ def marks_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Pan
         f"{found.slant:.1f}°, tilt {found.tilt:.1f}° or {found.tilt + 180:.1f}°, {found.error(truth):.1f}° off; "
         f"{mean:.1f}° on average of {_TRIALS}."
     )
-    return PanelAnswer((Shown.of(f"{count} marks", points_picture(places, tensors)),), words)
+    return Told((Shown.of(f"{count} marks", points_picture(places, tensors)),), words)
 
 
-def perspective_panel(truth: Orientation, count: int, rng: np.random.Generator) -> PanelAnswer:
+def perspective_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Told:
     """Return a perspective pattern, and the most likely orientation."""
     pattern = homogeneity.perspective_points(count, truth, rng)
     fit = homogeneity.orientation_of_density(pattern)
@@ -163,10 +131,10 @@ def perspective_panel(truth: Orientation, count: int, rng: np.random.Generator) 
     )
     if fit.at_guard:
         words += " The guard before the horizon held it back."
-    return PanelAnswer((Shown.of(f"{count} points", points_picture(pattern)),), words)
+    return Told((Shown.of(f"{count} points", points_picture(pattern)),), words)
 
 
-def counts_panel(truth: Orientation, count: int, rng: np.random.Generator) -> PanelAnswer:
+def counts_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Told:
     """Return a Poisson and a regular pattern in sets, and what their counts say."""
     shown, told = [], []
     for name, pattern in (("Poisson", points.poisson(count, truth, rng)), ("regular", points.regular(count, rng))):
@@ -179,4 +147,4 @@ def counts_panel(truth: Orientation, count: int, rng: np.random.Generator) -> Pa
         + f". On the plane every set is {area * _SETS**2:.2f} times as large as in the picture, wherever it lies: "
         "if the density on the plane is known the count gives the slant, and nothing gives the tilt."
     )
-    return PanelAnswer(tuple(shown), words)
+    return Told(tuple(shown), words)

@@ -9,9 +9,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTableWidget, QTableWidgetItem, QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, looker
+from texlab.docks.lab.page import MARGINS, LabPage, looker
 from texlab.docks.recent import Recent, Same
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import set_tip
 from texlab.widgets.tables import make_quiet
 from texlab_core.methods.de_bonet.report import DeBonetDetails
 from texlab_core.methods.de_bonet.search import (
@@ -68,12 +68,10 @@ class KeysPage(LabPage):
         make_quiet(self.table)
         tip = "Keys looked at, structures compared and structures found, for the place pointed at and on average"
         set_tip(self.table, tip)
-        self.words = Label("")
-        self.words.setWordWrap(True)
         layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
+        layout.setContentsMargins(*MARGINS)
         layout.addWidget(self.table)
-        layout.addWidget(self.words)
+        layout.addWidget(self.make_words())
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the counters of the chosen column's result."""

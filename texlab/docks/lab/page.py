@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from texlab.docks.frame import FramedDock
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
+from texlab.widgets.headed import headed
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
@@ -27,11 +28,13 @@ if TYPE_CHECKING:
 
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
+    from texlab.widgets.number_box import WholeBox
     from texlab_core.engine.steps import FloatImage
 
 
 # Figures show no more of an exemplar than this many pixels a side: they follow the pointer.
 LARGEST = 640
+MARGINS = (6, 0, 6, 6)
 
 
 class LabPage(FramedDock):
@@ -61,6 +64,43 @@ class LabPage(FramedDock):
         box.valueChanged.connect(lambda _: changed())
         self.add_control(box, name, label, tip)
         return box
+
+    def add_angle(
+        self, name: str, label: str, tip: str, limits: tuple[int, int], value: int, changed: Callable[[], Any]
+    ) -> WholeBox:
+        """Add an angle in degrees; one that goes all the way around goes on at the other end."""
+        box = self.add_number(name, label, tip, limits, changed)
+        box.setSuffix("°")
+        box.setWrapping(limits in ((0, 179), (0, 359)))
+        box.setValue(value)
+        return box
+
+    def add_again(self, label: str, tip: str) -> None:
+        """Add a button that draws once more; ``seed`` says with what."""
+        self.seed = 0
+        self.again = self.add_button("again", label, tip, self._again)
+
+    def _again(self) -> None:
+        self.seed += 1
+        self.ask()
+
+    def lay_out(self, count: int, *, linked: bool = True, words: bool = False, readout: bool = True) -> None:
+        """Fill the body with pictures side by side, whose values the pointer reads, and words below them."""
+        self.pictures = Pictures(f"{self.name}-pictures", count, linked=linked)
+        if readout:
+            self.readout = self.add_readout()
+            self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
+        layout = QVBoxLayout(self.body)
+        layout.setContentsMargins(*MARGINS)
+        layout.addWidget(self.pictures, 1)
+        if words:
+            layout.addWidget(self.make_words())
+
+    def make_words(self) -> Label:
+        """Return the place for words about the pictures."""
+        self.words = Label("")
+        self.words.setWordWrap(True)
+        return self.words
 
 
 def plane_of(pixels: FloatImage) -> NDArray[Any]:
@@ -108,6 +148,14 @@ class Shown:
     def of(cls, title: str, image: FloatImage, values: NDArray[Any] | None = None, unit: str = "") -> Shown:
         """Return a picture of an image (H, W, C) in [0, 1]."""
         return cls(title, to_picture(image), values, unit)
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """Pictures, and what they say."""
+
+    shown: tuple[Shown, ...]
+    words: str
 
 
 class Pictures(QWidget):
@@ -164,18 +212,6 @@ class Pictures(QWidget):
         """Repaint in another theme."""
         for pane in self.panes:
             pane.set_theme(theme)
-
-
-def headed(title: Label, view: QWidget) -> QWidget:
-    """Put a heading over a view; the heading takes no width of its own."""
-    title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-    part = QWidget()
-    column = QVBoxLayout(part)
-    column.setContentsMargins(0, 0, 0, 0)
-    column.setSpacing(1)
-    column.addWidget(title)
-    column.addWidget(view, 1)
-    return part
 
 
 class DragPlane(PlanePane):

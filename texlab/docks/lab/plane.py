@@ -11,11 +11,12 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import DragPlane, LabPage, Pictures, Shown, headed, plane_of
+from texlab.docks.lab.page import MARGINS, DragPlane, LabPage, Pictures, Shown, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.colouring import SEQUENTIAL_TABLE, Scale, paint
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
+from texlab.widgets.headed import headed
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Path, Spot
 from texlab_core.shape import exercises
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import Scene
     from texlab.style.pictures import Picture
-    from texlab.style.theme import Theme
     from texlab.widgets.plane_pane import Drawn, Tint
     from texlab_core.shape.isotropy import Landscape
 
@@ -88,14 +88,9 @@ class PlanePage(LabPage):
         self.source = self.add_choice("source", "View", tip, SOURCES, self._source_changed)
         self.source.setCurrentIndex(self.source.findData("discs"))
         tip = "Slant of the plane that is rendered"
-        self.slant = self.add_number("slant", "slant", tip, (0, int(MOST_SLANT)), self._view_changed)
-        self.slant.setSuffix("°")
-        self.slant.setValue(50)
+        self.slant = self.add_angle("slant", "slant", tip, (0, int(MOST_SLANT)), 50, self._view_changed)
         tip = "Tilt of the plane that is rendered: 0° to the right, 90° down"
-        self.tilt = self.add_number("tilt", "tilt", tip, (0, 359), self._view_changed)
-        self.tilt.setSuffix("°")
-        self.tilt.setWrapping(True)
-        self.tilt.setValue(30)
+        self.tilt = self.add_angle("tilt", "tilt", tip, (0, 359), 30, self._view_changed)
         tip = "Take the hypothesis of least cost"
         self.search = self.add_button("search", "Search", tip, lambda: self._take("search"))
         tip = "Take the estimate by second moments of the spectrum"
@@ -104,8 +99,6 @@ class PlanePage(LabPage):
         self.view = DragPlane("lab-plane-view", "View, with a disc that lies on the plane: drag its normal")
         self.landscape = DragPlane("lab-plane-landscape", "Cost of every hypothesis: drag to choose one")
         self.pictures = Pictures("lab-plane-pictures", 2, linked=False)
-        self.words = Label("")
-        self.words.setWordWrap(True)
         self.view.dragged.connect(self._drag_normal)
         self.landscape.dragged.connect(self._drag_cost)
         self.landscape.hovered.connect(self._hover)
@@ -119,15 +112,9 @@ class PlanePage(LabPage):
         row.addWidget(headed(self._cost_heading, self.landscape), 1)
         row.addWidget(self.pictures, 2)
         layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
+        layout.setContentsMargins(*MARGINS)
         layout.addWidget(views, 1)
-        layout.addWidget(self.words)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the views their colours."""
-        self.view.set_theme(theme)
-        self.landscape.set_theme(theme)
-        self.pictures.set_theme(theme)
+        layout.addWidget(self.make_words())
 
     # Asking.
 

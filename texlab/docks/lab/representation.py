@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown, looker, plane_of
+from texlab.docks.lab.page import LabPage, Shown, looker, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
-from texlab.widgets.plain import Label
 from texlab_core.sheets.laboratory import gray
 from texlab_core.stats import representation
 
@@ -19,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
 
 # Apart without colour, by their lightness too.
 CLASS_COLOURS = np.array(
@@ -59,19 +56,7 @@ class RepresentationPage(LabPage):
         self.threshold.setValue(0.5)
         tip = "Gather the energies of 24 filters (three scales) into so many classes; 1 leaves it out"
         self.classes = self.add_number("classes", "k-means", tip, (1, representation.MOST_CLASSES), self.ask)
-        self.readout = self.add_readout()
-        self.pictures = Pictures("lab-representation-pictures", 7)
-        self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures, 1)
-        self.words = Label("")
-        self.words.setWordWrap(True)
-        layout.addWidget(self.words)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
+        self.lay_out(7, words=True)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the stages on the exemplar."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LabPage, Pictures, Shown
+from texlab.docks.lab.page import LabPage, Shown, Told
 from texlab.docks.recent import Recent
-from texlab.widgets.plain import Label
 from texlab_core.shape.sheets import FOUND, TRUTH, needles
 from texlab_core.shape.sphere import LIMB, SLANT_BINS, errors_by_slant, local_shape, render_sphere
 from texlab_core.sheets.laboratory import gray
@@ -20,19 +17,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.shape.sphere import SphereTexture
 
 TEXTURES = (("discs", "discs"), ("noise", "noise"))
 _SIDE = 384
-
-
-@dataclass(frozen=True, eq=False)
-class SphereAnswer:
-    """Pictures, and what they say."""
-
-    shown: tuple[Shown, ...]
-    words: str
 
 
 class SpherePage(LabPage):
@@ -45,52 +33,31 @@ class SpherePage(LabPage):
     def build(self) -> None:
         """Make the controls and the pictures."""
         self._recent = Recent(4)
-        self._seed = 0
         self.texture = self.add_choice("texture", "Texture", "What is on the sphere", TEXTURES, self.ask)
         tip = "Side of the windows (four deviations): wide ones read low slants better and blur high ones"
         self.window_size = self.add_number("window", "window", tip, (8, 96), self.ask)
         self.window_size.setSuffix(" px")
         self.window_size.setValue(24)
-        self.again = self.add_button("again", "Another one", "Draw another texture of the same kind", self._again)
-        self.readout = self.add_readout()
-        self.pictures = Pictures("lab-sphere-pictures", 3)
-        self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
-        self.words = Label("")
-        self.words.setWordWrap(True)
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures, 1)
-        layout.addWidget(self.words)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
-
-    def _again(self) -> None:
-        self._seed += 1
-        self.ask()
+        self.add_again("Another one", "Draw another texture of the same kind")
+        self.lay_out(3, words=True)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the sphere; it needs no exemplar."""
-        texture, window, seed, recent = (
-            self.texture.currentData(),
-            self.window_size.value(),
-            self._seed,
-            self._recent,
-        )
+        texture, window = self.texture.currentData(), self.window_size.value()
+        seed, recent = self.seed, self._recent
 
-        def compute(should_stop: Callable[[], bool]) -> SphereAnswer:
+        def compute(should_stop: Callable[[], bool]) -> Told:
             return sphere_answer(texture, window, seed, recent)
 
         return Question((texture, window, seed), compute)
 
-    def show_answer(self, answer: SphereAnswer) -> None:
+    def show_answer(self, answer: Told) -> None:
         """Show pictures and words."""
         self.pictures.show_pictures(answer.shown)
         self.words.setText(answer.words)
 
 
-def sphere_answer(texture: SphereTexture, window: int, seed: int, recent: Recent) -> SphereAnswer:
+def sphere_answer(texture: SphereTexture, window: int, seed: int, recent: Recent) -> Told:
     """Return the view, needles of the estimates and of the truth, and the errors by slant."""
     sphere = recent.get((texture, seed), lambda: render_sphere(_SIDE, np.random.default_rng(seed), texture))
     found = local_shape(sphere.image, window)
@@ -100,7 +67,7 @@ def sphere_answer(texture: SphereTexture, window: int, seed: int, recent: Recent
     told = ", ".join(
         f"{error:.0f}° at {low} to {high}°" for (low, high), error in zip(SLANT_BINS, errors, strict=True)
     )
-    return SphereAnswer(
+    return Told(
         (
             Shown.of("view", gray(sphere.image), np.nan_to_num(sphere.slant), "° slant in truth"),
             Shown.of(

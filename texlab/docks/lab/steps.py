@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
-from texlab.docks.lab.page import LARGEST, LabPage, Pictures, Shown, plane_of
+from texlab.docks.lab.page import LARGEST, LabPage, Shown, plane_of
 from texlab.docks.recent import Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import gray, signed
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
 
 WAYS = (("down: smooth, reduce, expand, subtract", "down"), ("up: expand, add", "up"))
 MODES = (("interpolate", "interpolate"), ("replicate", "replicate"))
@@ -41,16 +39,7 @@ class StepsPage(LabPage):
         self.level = self.add_number("level", "level", "Which level; 0 is the finest", (0, 12), self.ask)
         tip = "Interpolate, or repeat every sample as the textbook's operator does"
         self.mode = self.add_choice("mode", "Expansion", tip, MODES, self.ask)
-        self.readout = self.add_readout()
-        self.pictures = Pictures("lab-steps-pictures", 5, linked=False)
-        self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
+        self.lay_out(5, linked=False)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the steps of the chosen level."""

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.frame import replace_items
-from texlab.docks.lab.page import LabPage, Pictures, Shown, plane_of
+from texlab.docks.lab.page import LabPage, Shown, plane_of
 from texlab.docks.recent import Recent, Same
 from texlab.style.pictures import to_picture
 from texlab_core.sheets.laboratory import gray, signed
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
     from texlab_core.stats.pyramid_kinds import PyramidKind
 
@@ -73,17 +71,8 @@ class SupportPage(LabPage):
         )
         self.orientations.setValue(4)
         self.band = self.add_choice("band", "Band", "Which band; or click its part of the plane", [], self.ask)
-        self.readout = self.add_readout()
-        self.pictures = Pictures("lab-support-pictures", 4, linked=False)
-        self.pictures.hovered.connect(lambda *at: self.readout.setText(self.pictures.told(*at)))
+        self.lay_out(4, linked=False)
         self.pictures.clicked.connect(self._clicked)
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.pictures)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panes their colours."""
-        self.pictures.set_theme(theme)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the supports of the chosen pyramid on the exemplar's plane."""

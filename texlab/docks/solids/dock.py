@@ -162,8 +162,7 @@ class SolidsDock(FramedDock):
 
     def paint_theme(self, theme: Theme) -> None:
         """Give the panes their colours; objects are drawn on the canvas."""
-        for area in self.areas:
-            area.set_theme(theme)
+        super().paint_theme(theme)
         self.ask()
 
     # What is asked.

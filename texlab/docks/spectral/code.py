@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.state.scene import ColumnScene, Scene
-    from texlab.style.theme import Theme
     from texlab_core.engine.steps import FloatImage
     from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure
     from texlab_core.methods.spectral.code import MsgCode
@@ -218,12 +217,6 @@ class CodeDock(FramedDock):
         view.nudged.connect(lambda place, steps: self._nudge(Number(group, place), steps))
         view.emptied.connect(lambda place: self._set(Number(group, place), 0.0))
         view.typed.connect(lambda place, text: self._begin(Number(group, place), text))
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give grids and bars their colours."""
-        for grid in self.grids.values():
-            grid.set_theme(theme)
-        self.bars.set_theme(theme)
 
     # Asking.
 

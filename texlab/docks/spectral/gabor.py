@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QRectF, QSignalBlocker
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, LookedAt
@@ -16,6 +16,7 @@ from texlab.docks.spectral.spectra import frequency_area
 from texlab.state.intentions import Open
 from texlab.style.colouring import gray
 from texlab.style.numbers import number
+from texlab.widgets.headed import headed
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Drawn, PlanePane, Ring
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
     from texlab.docks.spectral.gabor_pictures import Shown
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
 
 ZEBRA = "gallery:oriented-zebra"
 PANES = 5
@@ -88,7 +88,7 @@ class GaborDock(FramedDock):
         row = QHBoxLayout(self.body)
         row.setContentsMargins(6, 0, 6, 6)
         row.setSpacing(4)
-        self._plane_part = _headed(Label("filter bank"), self.plane)
+        self._plane_part = headed(Label("filter bank"), self.plane)
         row.addWidget(self._plane_part)
         self._link = ViewLink()
         self.panes: list[PicturePane] = []
@@ -98,7 +98,7 @@ class GaborDock(FramedDock):
             pane = PicturePane(f"gabor-pane-{index}", f"Picture {index + 1}", self._link)
             pane.hovered.connect(lambda row, column, index=index: self._hover(index, row, column))
             title = Label("")
-            part = _headed(title, pane)
+            part = headed(title, pane)
             row.addWidget(part, 1)
             self.panes.append(pane)
             self.titles.append(title)
@@ -107,13 +107,6 @@ class GaborDock(FramedDock):
         row.addWidget(self.bar)
         self.body.installEventFilter(self)
         self._show_controls()
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give panes and bar their colours."""
-        for pane in self.panes:
-            pane.set_theme(theme)
-        self.plane.set_theme(theme)
-        self.bar.set_theme(theme)
 
     # Asking.
 
@@ -258,14 +251,3 @@ def strongest_filter(u: float, v: float) -> tuple[int, float]:
     # A filter falls to half at its circle: gain = 2 ** -(distance / radius) ** 2.
     found = min(circles(), key=lambda circle: math.hypot(u - circle.u, v - circle.v) / circle.radius)
     return found.channel, float(2.0 ** -((math.hypot(u - found.u, v - found.v) / found.radius) ** 2))
-
-
-def _headed(title: Label, pane: QWidget) -> QWidget:
-    title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-    part = QWidget()
-    column = QVBoxLayout(part)
-    column.setContentsMargins(0, 0, 0, 0)
-    column.setSpacing(1)
-    column.addWidget(title)
-    column.addWidget(pane, 1)
-    return part

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QEvent, QRectF
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
@@ -15,6 +15,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.peaks_table import PeaksTable, peak_rows
 from texlab.docks.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
 from texlab.style.numbers import number
+from texlab.widgets.headed import headed
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
 from texlab.widgets.plots import SERIES, ColourBar, Plot
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from texlab.docks.spectral.spectra import PlanePicture, View
     from texlab.state.scene import Scene
-    from texlab.style.theme import Theme
     from texlab_core.stats.peaks import Peak
     from texlab_core.stats.spectrum import Floats
 
@@ -106,13 +106,7 @@ class SpectrumDock(FramedDock):
             pane.hovered.connect(lambda x, y, index=index: self._hover(index, x, y))
             pane.left.connect(lambda: self._tell(""))
             title = Label(label)
-            title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-            part = QWidget()
-            column = QVBoxLayout(part)
-            column.setContentsMargins(0, 0, 0, 0)
-            column.setSpacing(1)
-            column.addWidget(title)
-            column.addWidget(pane, 1)
+            part = headed(title, pane)
             row.addWidget(part, 1)
             self.panes.append(pane)
             self.titles.append(title)
@@ -138,15 +132,6 @@ class SpectrumDock(FramedDock):
             plot.left.connect(lambda: self._tell(""))
             self._plot_box.addWidget(plot)
         return self.plots
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give every part its colours."""
-        for pane in self.panes:
-            pane.set_theme(theme)
-        for plot in (self.radial, self.angular):
-            plot.set_theme(theme)
-        self.bar.set_theme(theme)
-        self.table.set_theme(theme)
 
     # Asking.
 

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.state.sweeps import ShownCell, SweepScene
-    from texlab.style.theme import Theme
     from texlab_core.sheets.sweep import Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
 
@@ -120,10 +119,6 @@ class SweepsDock(FramedDock):
         )
         self.status = Label("")
         self.add_control(self.status, "status", "State of the sweep", "How far the sweep is")
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the sheet its colours."""
-        self.sheet.set_theme(theme)
 
     # What there is to vary, and what came of it.
 

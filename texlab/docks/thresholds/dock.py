@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from texlab.docks.thresholds.table import Origin, TableView
     from texlab.state.scene import ColumnScene, Scene
-    from texlab.style.theme import Theme
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
 
@@ -132,11 +131,6 @@ class ThresholdsDock(FramedDock):
              editor.reset_all),
         ):  # fmt: skip
             self.add_button(name, label, tip, act)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give table and histogram their colours."""
-        self.editor.set_theme(theme)
-        self.distances.set_theme(theme)
 
     # Asking and showing.
 

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from texlab.docks.tuning.points import Placed
-    from texlab.style.theme import Theme
     from texlab.widgets.plots import Role
     from texlab_core.engine.inputs import ImageInput
 
@@ -118,11 +117,6 @@ class TuningDock(FramedDock):
         self.take_button = self.add_button(
             "take", "Take", "Give the column the parameters that the search found", self.take
         )
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give plot and picture their colours."""
-        self.plot.set_theme(theme)
-        self.picture.set_theme(theme)
 
     # What there is to show.
 
