@@ -24,6 +24,7 @@ from texlab.form.form import ParameterForm
 from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, register_editor
 from texlab.form.panel import ParametersView
 from texlab.form.scales import Scale
+from texlab.state.intentions import EditParams
 from texlab_core.engine.params import Knob, Params
 from texlab_core.engine.registry import methods
 from texlab_core.errors import ParamError
@@ -479,13 +480,13 @@ def test_an_editor_is_chosen_by_the_type(qtbot, monkeypatch):
 def test_keys_are_settled_for_their_own_column(qtbot):
     view = shown(qtbot, ParametersView())
     heard = []
-    view.edited.connect(lambda *args: heard.append(args))
+    view.intention.connect(heard.append)
     view.show_column(1, STUB_METHOD, EveryParams())
     slider = view.form.knobs["rounds"].slider
     slider.setFocus()
     qtbot.keyClick(slider, Qt.Key.Key_Right)
     view.show_column(2, STUB_METHOD, EveryParams(rounds=30))
-    assert heard == [(1, EveryParams(rounds=6), "rounds", False), (1, EveryParams(rounds=6), "rounds", True)]
+    assert heard == [EditParams(1, EveryParams(rounds=6), "rounds", final) for final in (False, True)]
     assert not [timer for timer in view.form.findChildren(QTimer) if timer.isActive()]
     assert view.form.params.rounds == 30
 
@@ -494,7 +495,7 @@ def test_keys_are_settled_for_their_own_column(qtbot):
 def test_what_was_begun_stays_with_its_own_column(qtbot, following):
     view = shown(qtbot, ParametersView())
     heard = []
-    view.edited.connect(lambda *args: heard.append(args))
+    view.intention.connect(heard.append)
     params = None if following is None else following.params()
     view.show_column(1, STUB_METHOD, EveryParams())
     knob = view.form.knobs["rounds"]
@@ -504,7 +505,7 @@ def test_what_was_begun_stays_with_its_own_column(qtbot, following):
     QTest.keyClicks(knob.box, "7")
     view.show_column(2, following, params)
     QApplication.processEvents()
-    assert heard == [(1, EveryParams(rounds=7), "rounds", True)]
+    assert heard == [EditParams(1, EveryParams(rounds=7), "rounds", True)]
     heard.clear()
     view.show_column(1, STUB_METHOD, EveryParams())
     slider = view.form.knobs["rounds"].slider
@@ -512,16 +513,25 @@ def test_what_was_begun_stays_with_its_own_column(qtbot, following):
     move(qtbot, slider, handle_point(slider, 0.6))
     view.show_column(2, following, params)
     QApplication.processEvents()
-    dragged = heard[0][1]
+    dragged = heard[0].params
     assert dragged.rounds > 5
     # The drag has ended there, or the column would keep its draft.
-    assert heard == [(1, dragged, "rounds", False), (1, dragged, "rounds", True)]
+    assert heard == [EditParams(1, dragged, "rounds", final) for final in (False, True)]
+
+
+def test_reset_gives_the_column_the_defaults(qtbot):
+    view = shown(qtbot, ParametersView())
+    heard = []
+    view.intention.connect(heard.append)
+    view.show_column(4, STUB_METHOD, EveryParams(rounds=7))
+    qtbot.mouseClick(view.reset_button, LEFT)
+    assert heard == [EditParams(4, EveryParams(), "reset all")]
 
 
 def test_a_form_that_is_gone_tells_nothing(qtbot):
     view = shown(qtbot, ParametersView())
     heard = []
-    view.edited.connect(lambda *args: heard.append(args))
+    view.intention.connect(heard.append)
     view.show_column(1, STUB_METHOD, EveryParams())
     knob = view.form.knobs["rounds"]
     knob.box.setFocus()

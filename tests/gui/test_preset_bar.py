@@ -13,7 +13,9 @@ from texlab.presets.bar import PresetBar
 from texlab.presets.dialog import PresetDialog
 from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
+from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
 from texlab.state.session import Column, Sample, Session, State
+from texlab.window.carrier import Carrier
 from texlab_core.documents.presets import Preset, read_preset, write_preset
 from texlab_core.engine.registry import find_method
 
@@ -42,21 +44,26 @@ class Bench:
         qtbot.waitExposed(self.window)
         self.session = Session()
         self.controller = Controller(self.session)
-        self.manager = PresetManager(self.window, self.bar, self.session, self.controller)
+        self.manager = PresetManager(self.window, self.bar)
+        carrier = Carrier(self.controller, self.session.select, *[self.never] * 4)
+        self.manager.intention.connect(carrier.carry_out)
         self.problems, self.said = [], []
         self.controller.problem.connect(self.problems.append)
         self.controller.said.connect(self.said.append)
         columns = (Column(1, "stub", START), Column(2, "heeger-bergen", find_method("heeger-bergen").params()))
         self.session.changed.connect(lambda *_: self.show())
         self.session.selected.connect(lambda _: self.show())
+        self.controller.exemplar_ready.connect(lambda prepared: self.manager.show_exemplar(prepared.exemplar))
         self.session.apply(State(None, columns, 1, (16, 16), 3), "start")
         self.session.select(1)
         self.session.reset_history()
         self.wait()
 
     def show(self):
-        column = self.session.selected_column
-        self.manager.show_method("" if column is None else column.method)
+        self.manager.show_session(self.session.state, self.session.selected_id)
+
+    def never(self, *given):
+        raise AssertionError(f"Nobody asked for this: {given}")
 
     def wait(self):
         """Wait until nothing is read or written."""
@@ -374,6 +381,35 @@ def test_export_and_import(bench, tmp_path):
     assert bench.session.undo_text == "preset from a friend"
     assert bench.bar.box.currentText() == "from a friend (own)"
     assert len(bench.files) == 1
+
+
+def test_what_is_wanted_leaves_as_intentions(qtbot, tmp_path):
+    window = QWidget()
+    qtbot.addWidget(window)
+    manager, wanted = PresetManager(window, PresetBar(window)), []
+    manager.intention.connect(wanted.append)
+    columns = (Column(4, "stub", START), Column(9, "stub", START), Column(2, "msg", find_method("msg").params()))
+    manager.show_session(State(None, columns, 1, (16, 16), 10), 9)
+    manager.take(paper())
+    listing, edit = wanted
+    assert isinstance(listing, AskOnce)
+    assert edit == EditParams(9, paper().params(START), "preset paper")
+    wanted.clear()
+    manager.take(Preset(name="other", method="msg", parameters={}))
+    manager.show_session(State(None, columns, 1, (16, 16), 10), 2)
+    wanted.clear()
+    manager.import_preset(paper())
+    (reading,) = wanted
+    read = reading.compute(lambda: False)
+    wanted.clear()
+    reading.done(read)
+    # No column of the method is chosen: the first one takes it.
+    assert wanted[:3] == [
+        ChooseColumn(4),
+        EditParams(4, paper().params(START), "preset paper"),
+        Tell("The preset paper was imported."),
+    ]
+    assert [type(each) for each in wanted[3:]] == [AskOnce]
 
 
 def test_an_imported_preset_goes_to_a_column_of_its_method(bench, tmp_path):

@@ -76,7 +76,7 @@ class Explorer(QObject):
             lambda preset: self.presets.import_preset(preset),
             self._show_several,
         )
-        self.presets = PresetManager(window, window.parameters.presets, self.session, self.controller)
+        self.presets = PresetManager(window, window.parameters.presets)
         self.autosave = Autosave(self.session, settings, self)
         self.crash = CrashHandler(self)
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
@@ -249,6 +249,7 @@ class Explorer(QObject):
         self.workspace.column_moved.connect(session.move_column)
         for dock in self.docks:
             dock.intention.connect(self.carrier.carry_out)
+        self.presets.intention.connect(self.carrier.carry_out)
 
     def _take_tab(self, how: str, _: bool = False) -> None:
         self.tabs.take_front(how)
@@ -265,8 +266,7 @@ class Explorer(QObject):
         window.toolbar.seed_turned.connect(lambda seed: turn("seed", partial(session.set_seed, seed)))
         window.toolbar.size_turned.connect(lambda size: turn("size", partial(session.set_size, size)))
         parameters = window.parameters
-        parameters.edited.connect(controller.edit_params)
-        parameters.reset_wanted.connect(controller.reset_params)
+        parameters.intention.connect(self.carrier.carry_out)
         parameters.help_wanted.connect(self.desk.show_help)
         self.desk.lesson_wanted.connect(lambda name: self.teacher.carry_out(OpenLesson(name)))
         parameters.dock_wanted.connect(window.raise_dock)

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout
 
 from texlab.form.form import ParameterForm
 from texlab.presets.bar import PresetBar
+from texlab.state.intentions import EditParams
 from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
@@ -20,12 +21,10 @@ if TYPE_CHECKING:
 class ParametersView(QWidget):
     """Shows the form of the chosen column's method.
 
-    ``edited(column_id, params, name, final)``; ``reset_wanted(column_id)``; ``help_wanted(method)``;
-    ``dock_wanted(name)``.
+    ``intention(EditParams)``; ``help_wanted(method)``; ``dock_wanted(name)``.
     """
 
-    edited = Signal(int, object, str, bool)
-    reset_wanted = Signal(int)
+    intention = Signal(object)
     help_wanted = Signal(str)
     dock_wanted = Signal(str)
 
@@ -67,7 +66,7 @@ class ParametersView(QWidget):
         self._told: ParameterForm | None = None
         self._column_id = 0
         self._method = ""
-        self.reset_button.clicked.connect(lambda: self.reset_wanted.emit(self._column_id))
+        self.reset_button.clicked.connect(self._reset)
         self.help_button.clicked.connect(lambda: self.help_wanted.emit(self._method))
 
     def show_column(self, column_id: int, method: Method | None, params: Params | None) -> None:
@@ -110,4 +109,11 @@ class ParametersView(QWidget):
         self.scroll_area.setWidget(form or QWidget())
         if form is not None:
             form.dock_wanted.connect(self.dock_wanted)
-            form.edited.connect(lambda params, name, final: self.edited.emit(self._column_id, params, name, final))
+            form.edited.connect(self._edit)
+
+    def _edit(self, params: Params, name: str, final: bool) -> None:
+        self.intention.emit(EditParams(self._column_id, params, name, final))
+
+    def _reset(self) -> None:
+        if self.form is not None:
+            self._edit(type(self.form.params)(), "reset all", True)

@@ -6,10 +6,12 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from texlab.presets.dialog import PresetDialog
+from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
+from texlab.state.session import State
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name
 from texlab_core.documents.presets import Preset, read_preset
@@ -20,22 +22,27 @@ if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
     from texlab.presets.bar import PresetBar
-    from texlab.runs.controller import Controller
-    from texlab.runs.worker import Task
-    from texlab.state.session import Session
+    from texlab.state.session import Column
+    from texlab_core.engine.inputs import ImageInput
 
 Listed = tuple[str, list[Preset], set[tuple[str, str]], tuple[str, ...]]
 
 
 class PresetManager(QObject):
-    """Keeps the preset bar of the chosen column up to date and does what it asks."""
+    """Keeps the preset bar of the chosen column up to date and does what it asks.
 
-    def __init__(self, window: QWidget, bar: PresetBar, session: Session, controller: Controller) -> None:
+    What is to happen to columns, in the background or in the window leaves as ``intention(Intention)``.
+    """
+
+    intention = Signal(object)
+
+    def __init__(self, window: QWidget, bar: PresetBar) -> None:
         super().__init__(window)
         self._window = window
         self._bar = bar
-        self._session = session
-        self._controller = controller
+        self._state = State()
+        self._selected_id = 0
+        self._exemplar: ImageInput | None = None
         self._store = PresetStore(config_dir() / "presets")
         self._method = ""
         self._current: tuple[str, str] | None = None
@@ -45,8 +52,11 @@ class PresetManager(QObject):
         bar.chosen.connect(self.take)
         bar.command.connect(self._command)
 
-    def show_method(self, method: str) -> None:
-        """List the presets of a method (again only when it is another one)."""
+    def show_session(self, state: State, selected_id: int) -> None:
+        """List the presets of the chosen column's method (again only when it is another one)."""
+        self._state, self._selected_id = state, selected_id
+        column = self._column
+        method = "" if column is None else column.method
         if method != self._method:
             self._method = method
             self._current = None
@@ -55,9 +65,20 @@ class PresetManager(QObject):
         else:
             self._forget_changed()
 
+    def show_exemplar(self, exemplar: ImageInput | None) -> None:
+        """Take note of the exemplar that presets are made with."""
+        self._exemplar = exemplar
+
+    @property
+    def _column(self) -> Column | None:
+        return self._state.column(self._selected_id)
+
+    def _once(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
+        self.intention.emit(AskOnce("presets", lambda should_stop: work(), done))
+
     def _forget_changed(self) -> None:
         """Show no preset as chosen once the column's parameters are no longer those of the preset."""
-        column, preset = self._session.selected_column, self._bar.current
+        column, preset = self._column, self._bar.current
         if preset is None or column is None or preset.key != self._current:
             return
         try:
@@ -75,14 +96,14 @@ class PresetManager(QObject):
             self._bar.show_presets([], set())
             return
 
-        def work(task: Task) -> Listed:
+        def work() -> Listed:
             own = store.presets(method)
             keys = {each.key for each in own}
             # One of the user's stands for a bundled one of the same name.
             bundled = [each for each in bundled_presets(method) if each.key not in keys]
             return method, [*bundled, *own], keys, store.problems()
 
-        self._controller.once("presets", work, self._show)
+        self._once(work, self._show)
 
     def _show(self, listed: Listed) -> None:
         method, presets, own, problems = listed
@@ -90,22 +111,24 @@ class PresetManager(QObject):
             self._own = [each.name for each in presets if each.key in own]
             self._bar.show_presets(presets, own, self._current)
         if problems and problems != self._problems:
-            self._controller.problem.emit(" ".join(problems))
+            self.intention.emit(Tell(" ".join(problems), problem=True))
         self._problems = problems
 
     def take(self, preset: Preset) -> None:
         """Give the chosen column the values of a preset."""
-        column = self._session.selected_column
-        if column is None or column.method != preset.method:
-            return
+        column = self._column
+        if column is not None and column.method == preset.method:
+            self._give(column, preset)
+
+    def _give(self, column: Column, preset: Preset) -> None:
         try:
             params = preset.params(column.params)
         except ValueError as error:
-            self._controller.problem.emit(str(error))
+            self.intention.emit(Tell(str(error), problem=True))
             self._bar.forget_current()
             return
         self._current = preset.key
-        self._session.set_params(column.id, params, f"preset {preset.name}")
+        self.intention.emit(EditParams(column.id, params, f"preset {preset.name}"))
 
     def import_file(self, path: str) -> None:
         """Read a preset from a file, keep it, and give it to a column of its method."""
@@ -116,21 +139,20 @@ class PresetManager(QObject):
         self._import(lambda: preset)
 
     def _import(self, read: Callable[[], Preset]) -> None:
-        def work(task: Task) -> Preset:
+        def work() -> Preset:
             preset = read()
             self._store.save(preset, replace=False)
             return preset
 
-        self._controller.once("presets", work, self._imported)
+        self._once(work, self._imported)
 
     def _imported(self, preset: Preset) -> None:
-        chosen = self._session.selected_column
-        columns = [*([chosen] if chosen is not None else []), *self._session.state.columns]
+        columns = sorted(self._state.columns, key=lambda column: column.id != self._selected_id)
         column = next((each for each in columns if each.method == preset.method), None)
         if column is not None:
-            self._session.select(column.id)
-            self.take(preset)
-        self._controller.said.emit(f"The preset {preset.name} was imported.")
+            self.intention.emit(ChooseColumn(column.id))
+            self._give(column, preset)
+        self.intention.emit(Tell(f"The preset {preset.name} was imported."))
         self.refresh()
 
     def _command(self, name: str, preset: Preset | None) -> None:
@@ -148,14 +170,14 @@ class PresetManager(QObject):
         dialog.open()
 
     def _save(self) -> None:
-        column = self._session.selected_column
+        column = self._column
         if column is None:
             return
-        exemplar = self._controller.exemplar
+        exemplar = self._exemplar
         current = self._bar.current
 
         def save(name: str, note: str, is_partial: bool) -> None:
-            def work(task: Task) -> Preset:
+            def work() -> Preset:
                 preset = Preset.of(name, column.method, column.params, note=note, exemplar=exemplar)
                 if is_partial:
                     defaults = type(column.params)().to_json()
@@ -176,7 +198,7 @@ class PresetManager(QObject):
             return
 
         def rename(name: str, note: str, is_partial: bool) -> None:
-            self._do(lambda task: self._store.rename(preset.name, name, preset.method), f"Renamed to {name}.")
+            self._do(lambda: self._store.rename(preset.name, name, preset.method), f"Renamed to {name}.")
 
         dialog = PresetDialog("Rename preset", preset.name, self._own, is_new=False, parent=self._window)
         self._ask(dialog, rename)
@@ -188,19 +210,18 @@ class PresetManager(QObject):
         def done(deleted: Preset) -> None:
             self._deleted, self._current = deleted, None
             self._bar.offer_restore(deleted.name)
-            self._controller.said.emit(
-                f"Deleted the preset {deleted.name}; the menu of presets can bring it back."
-            )
+            told = f"Deleted the preset {deleted.name}; the menu of presets can bring it back."
+            self.intention.emit(Tell(told))
             self.refresh()
 
-        self._controller.once("presets", lambda task: self._store.delete(preset.name, preset.method), done)
+        self._once(lambda: self._store.delete(preset.name, preset.method), done)
 
     def _restore(self) -> None:
         preset = self._deleted
         if preset is None:
             return
 
-        def work(task: Task) -> Preset:
+        def work() -> Preset:
             self._store.save(preset)
             return preset
 
@@ -209,14 +230,14 @@ class PresetManager(QObject):
             self._bar.offer_restore(None)
             self._done(restored, f"The preset {restored.name} is back.")
 
-        self._controller.once("presets", work, done)
+        self._once(work, done)
 
     def _export(self, preset: Preset | None) -> None:
         if preset is None:
             return
 
         def export(path: str) -> None:
-            self._do(lambda task: export_preset(preset, path, replace=True), f"Exported to {path}.")
+            self._do(lambda: export_preset(preset, path, replace=True), f"Exported to {path}.")
 
         dialog = self._file_dialog("Export preset", export)
         dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
@@ -237,11 +258,11 @@ class PresetManager(QObject):
         dialog.finished.connect(dialog.deleteLater)
         return dialog
 
-    def _do(self, work: Callable[[Task], Any], said: str) -> None:
-        self._controller.once("presets", work, lambda value: self._done(value, said))
+    def _do(self, work: Callable[[], Any], said: str) -> None:
+        self._once(work, lambda value: self._done(value, said))
 
     def _done(self, value: Any, said: str) -> None:
         if isinstance(value, Preset):
             self._current = value.key
-        self._controller.said.emit(said)
+        self.intention.emit(Tell(said))
         self.refresh()

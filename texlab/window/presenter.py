@@ -65,12 +65,13 @@ class Presenter(QObject):
         self._window.parameters.show_column(
             self._session.selected_id, method, column.params if column is not None else None
         )
-        self._presets.show_method(column.method if column is not None else "")
+        self._presets.show_session(self._session.state, self._session.selected_id)
         self._show_choice()
 
     def show_exemplar(self, prepared: Prepared) -> None:
         """Show another exemplar."""
         self._workspace.exemplar.show_source(prepared.source_picture)
+        self._presets.show_exemplar(prepared.exemplar)
         self._show_choice()
 
     def show_scene(self, scene: Scene) -> None:
