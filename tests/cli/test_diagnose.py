@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 
+from texlab_core.measures.registry import find_measure
+
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab
 
@@ -99,7 +101,13 @@ def test_synth_and_redo_say_what_they_find(texlab: Texlab) -> None:
     options = ("--method", "heeger-bergen", "--size", "96x96", "--crop", "64x64+0+0", "--json")
     made = json.loads(texlab("synth", "gallery:oriented-zebra", *options, "--out", "a.png").out)
     assert "structure-lost" in {each["id"] for each in made["findings"]}
-    assert json.loads(texlab("redo", "a.png", "--out", "b.png", "--json").out)["findings"] == made["findings"]
+    again = json.loads(texlab("redo", "a.png", "--out", "b.png", "--json").out)
+    assert again["findings"] == made["findings"]
+    # What was measured is kept in the file, and told again.
+    assert again["measures_then"] == again["measures"] == made["measures"]
+    told = texlab("redo", "b.png", "--out", "c.png").out
+    number = find_measure("discriminability").text(made["measures"]["discriminability"])
+    assert f"  b.png was saved with D {number}, " in told
     # What is saved in 8 bits is judged nearly as what was computed.
     again = json.loads(texlab("diagnose", "a.png", "--json").out)
     assert [each["id"] for each in again["findings"]] == [each["id"] for each in made["findings"]]

@@ -47,7 +47,9 @@ def whole():
         exemplar=as_exemplar(DEEP, name="deep wall.tif"),
         columns=(
             column(title="Mine: α", result=picture),
-            ProjectColumn("heeger-bergen", heeger, {}, (24, 28)),
+            ProjectColumn(
+                "heeger-bergen", heeger, {}, (24, 28), seed=9, pinned=True, measures={"discriminability": -3.25}
+            ),
             column("mixture", inputs={"second": as_exemplar(RANDOM.random((20, 20, 3)), name="b")}),
             column("efros-leung", inputs={"mask": mask}),
         ),
@@ -82,13 +84,10 @@ def test_a_project_comes_back_as_it_was(saved):
     np.testing.assert_array_equal(found.exemplar.pixels, before.exemplar.pixels)
     assert same(found.exemplar, before.exemplar)
     for one, other in zip(found.columns, before.columns, strict=True):
-        assert (one.method, one.params, one.size, one.title) == (
-            other.method,
-            other.params,
-            other.size,
-            other.title,
-        )
+        for name in ("method", "params", "size", "title", "seed", "pinned", "measures"):
+            assert getattr(one, name) == getattr(other, name)
         assert one.inputs.keys() == other.inputs.keys()
+    assert [found.job(place).seed for place in (0, 1)] == [77, 9]
     assert found.columns[0].result.startswith(b"\x89PNG")
     np.testing.assert_array_equal(
         run(found.job(1)).image, run(before.job(1)).image, "the job of a column has the same bits"
@@ -228,7 +227,7 @@ CHANGES = {
 }  # fmt: skip
 IN_COLUMN = {
     "method": "none", "parameters": {"iterations": 10**9}, "inputs": {"exemplar": "x"}, "size": {"width": 1},
-    "title": "x" * 201, "result": "yes", "more": 1,
+    "title": "x" * 201, "result": "yes", "more": 1, "seed": -1, "pinned": 1, "measures": {"a": True},
 }  # fmt: skip
 
 

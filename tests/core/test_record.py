@@ -128,6 +128,22 @@ def test_the_picture_is_the_result_and_other_programs_see_the_recipe(tmp_path):
         read_recipe(encode_png(np.zeros((2, 2), np.uint8)))
 
 
+def test_numbers_that_are_known_are_kept_with_the_recipe(tmp_path):
+    result = result_of(as_exemplar(levels()))
+    known = {"copied-share": 0.25, "of-another-package": -3, "not-measured": math.nan}
+    save_result(result, tmp_path / "a.png", measures=known)
+    assert read_recipe(tmp_path / "a.png").measures == {"copied-share": 0.25, "of-another-package": -3.0}
+    # What the method says itself is known without measuring.
+    save_result(result, tmp_path / "b.png")
+    assert read_recipe(tmp_path / "b.png").measures == dict(result.measures) != {}
+    # They decide nothing, and who knows nothing of them reads the rest.
+    again, bare = (read_recipe(tmp_path / name).job() for name in ("a.png", "b.png"))
+    assert again.key == bare.key == result.job.key
+    data = recipe_data()
+    del data["measures"]
+    assert read(data).measures == {}
+
+
 def test_a_recipe_also_reads_from_bytes(tmp_path):
     result = result_of(as_exemplar(levels()))
     for name in ("out.png", "out.tif", "out.jpg", "out.webp"):
@@ -361,6 +377,12 @@ HOSTILE = {
     "versions of numbers": lambda: recipe_data(versions={"numpy": 2}),
     "versions that clear the screen": lambda: recipe_data(versions={"numpy": "\x1b[2J"}),
     "a library that clears the screen": lambda: recipe_data(versions={"\x1b[2J": "1"}),
+    "measures without names": lambda: recipe_data(measures=[1.0]),
+    "measures that are no numbers": lambda: recipe_data(measures={"d": "low"}),
+    "measures that are true": lambda: recipe_data(measures={"d": True}),
+    "a measure that clears the screen": lambda: recipe_data(measures={"\x1b[2J": 1.0}),
+    "a measure with a long name": lambda: recipe_data(measures={"d" * 81: 1.0}),
+    "too many measures": lambda: recipe_data(measures={str(number): 1.0 for number in range(257)}),
     "inputs of another type": lambda: recipe_data(inputs=[]),
     "no inputs": lambda: recipe_data(inputs={}),
     "an unknown input": lambda: recipe_data(inputs={"start": {}}),

@@ -171,7 +171,7 @@ def test_a_saved_result_brings_its_job_back(bench: Bench, tmp_path: Path) -> Non
     params = HB.params(scales=1, iterations=1)
     result = run(Job(method=HB.id, inputs={"exemplar": exemplar}, params=params, size=(16, 20), seed=77))
     path = tmp_path / "made.png"
-    bench.opener.save(result, str(path))
+    bench.opener.save(result, str(path), measures={"discriminability": -3.126, "copied-share": 0.4})
     bench.background.go_on()
     assert bench.background.news == [f"Saved {path} with its recipe."]
     assert read_recipe(str(path)).job().seed == 77
@@ -181,6 +181,7 @@ def test_a_saved_result_brings_its_job_back(bench: Bench, tmp_path: Path) -> Non
     assert (state.seed, state.size, state.column(1).params) == (77, (16, 20), params)
     assert bench.session.selected_id == 1
     assert bench.recent == []
+    assert bench.background.news[1].endswith(" were restored. It was saved with D -3.13, copied 40%.")
     # What a file asks for may be too much; an example of our own is not.
     assert bench.background.asking == 1
     bench.opener.open_failure("tiling")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
+from texlab.columns.status import figures, numbers_of, shows_numbers
 from texlab.state.session import Sample, State
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import open_project, project_of
@@ -37,6 +39,8 @@ def test_a_session_is_saved_and_opened_again(
     qtbot: Any, explorer: Explorer, open_window: Callable[..., Explorer], tmp_path: Path
 ) -> None:
     explorer.session.select(ids(explorer)[1])
+    explorer.session.set_column_seed(ids(explorer)[0], 41)
+    explorer.session.rename_column(ids(explorer)[0], "Mine")
     explorer.controller.edit_crop(Crop(2, 4, 30, 32), True)
     wait_idle(qtbot, explorer)
     images = [result_image(explorer, each) for each in ids(explorer)]
@@ -51,6 +55,7 @@ def test_a_session_is_saved_and_opened_again(
     assert not set(ids(other)) & set(before)
     assert other.session.selected_id == ids(other)[1]
     assert other.session.state.sample.crop == Crop(2, 4, 30, 32)
+    assert [(each.name, each.seed) for each in other.session.state.columns] == [("Mine", 41), ("", None)]
     for image, column_id in zip(images, ids(other), strict=True):
         np.testing.assert_array_equal(result_image(other, column_id), image)
     other.session.undo()
@@ -81,16 +86,21 @@ def test_the_pictures_of_a_project_are_there_before_its_columns_run(
         np.testing.assert_array_equal(opened.pictures[number], wanted)
     seen: list[Any] = []
     show = explorer.controller.show_stored
+    known = [explorer.controller.column_scene(each).measures for each in ids(explorer)]
 
-    def spy(pictures: Any) -> None:
-        show(pictures)
-        seen.extend(explorer.controller.column_scene(column_id) for column_id in pictures)
+    def spy(column_id: int, picture: Any, measures: Any) -> None:
+        show(column_id, picture, measures)
+        seen.append(explorer.controller.column_scene(column_id))
 
     monkeypatch.setattr(explorer.controller, "show_stored", spy)
     explorer.opener.open(str(path))
     qtbot.waitUntil(lambda: bool(seen))
     for number, scene in enumerate(seen, 1):
         assert scene.status != "finished"
+        # The numbers come with them, and nothing was measured for that.
+        assert scene.measures == known[number - 1]
+        assert len(figures(numbers_of(scene))) == 3
+        assert shows_numbers(dataclasses.replace(scene, status="waiting"))
         np.testing.assert_array_equal(scene.picture, opened.pictures[number])
     wait_idle(qtbot, explorer)
 

@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
 from texlab.columns.arrangement import Frame
-from texlab.columns.status import MOST_NUMBERS, Figure, details, figures, numbers_of, status_parts
+from texlab.columns.status import MOST_NUMBERS, Figure, details, figures, numbers_of, shows_numbers, status_parts
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.status_line import StatusLine
 
@@ -67,7 +67,7 @@ class Foot(QWidget):
 
     def show_scene(self, scene: ColumnScene) -> None:
         """Show the figures and the state of a column."""
-        found = tuple(figures(numbers_of(scene), self.before)) if scene.status == "finished" else ()
+        found = tuple(figures(numbers_of(scene), self.before)) if shows_numbers(scene) else ()
         if found != self._shown:
             self._shown = found
             for label, figure in zip(self.figures, found, strict=False):

@@ -76,6 +76,20 @@ def numbers_of(scene: ColumnScene) -> dict[str, float]:
     return {**said, **scene.measures}
 
 
+def shows_numbers(scene: ColumnScene) -> bool:
+    """Whether the numbers are about the picture that is shown: a finished one, or one of an earlier session."""
+    return scene.status == "finished" or (
+        scene.status in ("idle", "waiting") and scene.result is None and not scene.draft
+    )
+
+
+def known_numbers(scene: ColumnScene | None) -> dict[str, float] | None:
+    """Return the numbers about the finished result by id, as files keep them; None while there are none."""
+    # Those of a draft are about a smaller picture.
+    measured = scene is not None and scene.status == "finished" and not scene.draft and bool(scene.measures)
+    return numbers_of(scene) if measured and scene is not None else None
+
+
 @dataclass(frozen=True)
 class Figure:
     """A number that is shown large.

@@ -37,6 +37,8 @@ from texlab_core.measures.subject import PreparedCache
 from texlab_core.warming import Need, Warmth
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab.runs.column_run import Keep
     from texlab.state.session import Column, State
     from texlab.style.pictures import Picture
@@ -95,10 +97,11 @@ class ColumnRunner(QObject):
         self.worker.failed.connect(self._failed)
         self.worker.cancelled.connect(self._cancelled)
 
-    def show_stored(self, picture: Picture) -> None:
-        """Show the picture of an earlier result until there is another one."""
+    def show_stored(self, picture: Picture, measures: Mapping[str, float]) -> None:
+        """Show the picture of an earlier result with its numbers until there is another one."""
         if self.scene.picture is None:
-            self._show(picture=picture)
+            size = (picture.shape[0], picture.shape[1]) if measures else None
+            self._show(picture=picture, measures=measures, measured_size=size)
 
     @property
     def running(self) -> bool:

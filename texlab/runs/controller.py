@@ -217,11 +217,10 @@ class Controller(QObject):
             if runner is not None and runner.drafted:
                 self._start(column_id, alone=len(columns) == 1)
 
-    def show_stored(self, pictures: Mapping[int, Picture]) -> None:
-        """Show pictures of earlier results, by column id, until those of the present runs come."""
-        for column_id, picture in pictures.items():
-            if (runner := self._runners.get(column_id)) is not None:
-                runner.show_stored(picture)
+    def show_stored(self, column_id: int, picture: Picture, measures: Mapping[str, float]) -> None:
+        """Show an earlier result of a column with its numbers, until that of the present run comes."""
+        if (runner := self._runners.get(column_id)) is not None:
+            runner.show_stored(picture, measures)
 
     def point_at(self, column_id: int, row: int, column: int) -> None:
         """Ask about the pixel under the pointer, unless another one is pinned."""

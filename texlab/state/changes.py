@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from texlab.state.session import Column, Sample, State
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab_core.engine.inputs import DataInput, ImageInput
     from texlab_core.engine.job import Job
     from texlab_core.sheets.sweep import Cell
@@ -19,11 +21,12 @@ SMALLEST_SIDE = 2
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """What a file turned out to be: an image, or a saved result with the job that made it."""
+    """What a file turned out to be: an image, or a saved result with its job and its numbers by id."""
 
     image: ImageInput
     path: str | None
     job: Job | None = None
+    measures: Mapping[str, float] = field(default_factory=dict)
 
 
 def sample_of(image: ImageInput, path: str | None) -> Sample:

@@ -35,6 +35,8 @@ class OpenedProject:
         Id of the chosen column.
     pictures
         Of finished results, by id, (H, W, 3) uint8.
+    measures
+        What was known of them: numbers by the id of their measure, by id of the column.
     layout
         "explore", "teach", "tune" or "".
     notes
@@ -44,6 +46,7 @@ class OpenedProject:
     state: State
     selected: int
     pictures: Mapping[int, Picture]
+    measures: Mapping[int, Mapping[str, float]]
     layout: str
     notes: tuple[str, ...] = ()
 
@@ -54,7 +57,13 @@ def is_project(source: object) -> bool:
 
 
 def project_of(
-    state: State, selected: int, images: Mapping[int, FloatImage], layout: str, *, for_student: bool = False
+    state: State,
+    selected: int,
+    images: Mapping[int, FloatImage],
+    layout: str,
+    *,
+    measures: Mapping[int, Mapping[str, float]] | None = None,
+    for_student: bool = False,
 ) -> Project:
     """Return the session as a project; runs in a thread.
 
@@ -66,6 +75,8 @@ def project_of(
         Finished results by column id, (H, W, C) float32.
     layout
         Name of the layout.
+    measures
+        Numbers about these results by id of the measure, by column id.
     for_student
         Names of files lose their folders, so that nothing tells of this computer.
     """
@@ -81,7 +92,11 @@ def project_of(
             params=column.params,
             inputs=dict(column.inputs),
             size=column.size,
+            title=column.name,
             result=encode_image("a.png", images[column.id]) if column.id in images else b"",
+            seed=column.seed,
+            pinned=column.pinned,
+            measures=(measures or {}).get(column.id, {}),
         )
         for column in state.columns
     )
@@ -135,10 +150,14 @@ def open_project(path: str) -> OpenedProject:
 
     project = read_project(path)
     sample = None if project.exemplar is None else Sample(project.exemplar, project.scale, project.crop)
-    columns, pictures = [], {}
+    columns, pictures, measures = [], {}, {}
     for number, each in enumerate(project.columns, 1):
-        columns.append(Column(number, each.method, each.params, tuple(each.inputs.items()), each.size))
+        inputs = tuple(each.inputs.items())
+        columns.append(
+            Column(number, each.method, each.params, inputs, each.size, each.title, each.pinned, each.seed)
+        )
         if each.result:
+            measures[number] = each.measures
             values = read_image(each.result, f"the result of column {number}").values[..., :3]
             pictures[number] = values.repeat(3, axis=2) if values.shape[2] == 1 else values
     size = project.size
@@ -147,7 +166,9 @@ def open_project(path: str) -> OpenedProject:
     said = [f"Opened {path}: {len(columns)} columns ({names})."]
     if kept := _keep_presets(project):
         said.append(f"New presets: {', '.join(kept)}.")
-    return OpenedProject(state, project.chosen + 1 if columns else 0, pictures, project.layout, tuple(said))
+    return OpenedProject(
+        state, project.chosen + 1 if columns else 0, pictures, measures, project.layout, tuple(said)
+    )
 
 
 def _keep_presets(project: Project) -> list[str]:

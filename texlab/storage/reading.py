@@ -137,10 +137,11 @@ def open_source(
     path = None if isinstance(source, bytes) or source.startswith("gallery:") else str(Path(source).absolute())
     if path is not None or isinstance(source, bytes):
         with contextlib.suppress(NoRecipeError):
-            job = read_recipe(source).job(given=given)
+            recipe = read_recipe(source)
+            job = recipe.job(given=given)
             image = job.inputs.get("exemplar")
             if isinstance(image, ImageInput):
-                return Opened(image, None, job)
+                return Opened(image, None, job, recipe.measures)
     return Opened(_read_image(source, None, should_stop, alpha), path)
 
 

@@ -10,6 +10,7 @@ from PySide6.QtCore import QMimeData, QStringListModel
 from PySide6.QtGui import QGuiApplication, QImage
 from PySide6.QtWidgets import QFileDialog
 
+from texlab.columns.status import known_numbers
 from texlab.storage.projects import SUFFIX as PROJECT
 from texlab.widgets.mime import brought_by
 from texlab.widgets.plain import message_box
@@ -113,7 +114,7 @@ class Exchange:
                 # The dialog has not asked about this one.
                 self._tell(f"{target} is already there: choose it to replace it.")
                 return
-            self._opener.save(scene.result, str(target), chosen_bits(target, kind))
+            self._opener.save(scene.result, str(target), chosen_bits(target, kind), known_numbers(scene))
 
     def copy(self, column_id: int) -> None:
         """Put a column's picture on the clipboard."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 
+from texlab.columns.status import known_numbers
 from texlab.runs.column_run import job_of
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab.window.run_dialog import RunDesk
@@ -120,7 +121,8 @@ def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item
         # While a control is dragged, the result is of what was there before.
         if result is not None and result.job.key == job.key:
             # Depth and transparency are those of today's exemplar.
-            items.append(Item(job, result=dataclasses.replace(result, job=job)))
+            known = known_numbers(scene)
+            items.append(Item(job, result=dataclasses.replace(result, job=job), measures=known))
         else:
             items.append(Item(job))
     return items

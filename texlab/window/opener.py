@@ -6,6 +6,7 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from texlab.columns.status import figures
 from texlab.state.changes import (
     Opened,
     fitting,
@@ -174,8 +175,8 @@ class Opener:
             columns = self._session.state.columns
             if columns:
                 self._session.select(columns[max(opened.selected - 1, 0)].id)
-            stored = {columns[place - 1].id: picture for place, picture in opened.pictures.items()}
-            self._controller.show_stored(stored)
+            for place, picture in opened.pictures.items():
+                self._controller.show_stored(columns[place - 1].id, picture, opened.measures[place])
             self._forget_start(first)
             self._settings.add_recent(path)
             if opened.layout:
@@ -209,7 +210,11 @@ class Opener:
         if opened.job is not None:
             self._controller.ask_first()
             self._restore(opened, "restore a result")
-            self._controller.said.emit("The saved result's exemplar, parameters, size and seed were restored.")
+            told = ", ".join(each.text for each in figures(opened.measures))
+            saved_with = f" It was saved with {told}." if told else ""
+            self._controller.said.emit(
+                f"The saved result's exemplar, parameters, size and seed were restored.{saved_with}"
+            )
             return
         if opened.path is not None:
             self._settings.add_recent(opened.path)
@@ -265,12 +270,18 @@ class Opener:
 
         self._controller.once("use", work, lambda image: self._session.set_sample(Sample(image)))
 
-    def save(self, result: Result, path: str, bits: Bits | None = None) -> None:
-        """Save a result with its recipe, at the exemplar's own depth unless another one is given."""
+    def save(
+        self,
+        result: Result,
+        path: str,
+        bits: Bits | None = None,
+        measures: Mapping[str, float] | None = None,
+    ) -> None:
+        """Save a result with recipe and numbers, at the exemplar's own depth unless another one is given."""
         exemplar = self._controller.exemplar
 
         def work(task: Task) -> str:
-            return save_as(with_exemplar(result, exemplar), path, bits)
+            return save_as(with_exemplar(result, exemplar), path, bits, measures)
 
         self._controller.once("save", work, self._controller.said.emit)
 
@@ -287,7 +298,7 @@ def with_exemplar(result: Result, exemplar: ImageInput | None) -> Result:
     return dataclasses.replace(result, job=dataclasses.replace(job, inputs={**job.inputs, "exemplar": exemplar}))
 
 
-def save_as(result: Result, path: str, bits: Bits | None) -> str:
+def save_as(result: Result, path: str, bits: Bits | None, measures: Mapping[str, float] | None = None) -> str:
     """Save a result (in a worker's thread), and return what there is to say of it."""
     from texlab_core.documents.record import carried_alpha, result_bits, save_result
     from texlab_core.images.formats.writing import can_hold_alpha
@@ -295,7 +306,7 @@ def save_as(result: Result, path: str, bits: Bits | None) -> str:
     wanted = result_bits(result, path) if bits is None else bits
     flat = result.volume is None and can_hold_alpha(path)
     alpha = carried_alpha(result) if flat else None
-    notes = save_result(result, path, bits=wanted, alpha=alpha)
+    notes = save_result(result, path, bits=wanted, alpha=alpha, measures=measures)
     exemplar = result.job.inputs.get("exemplar")
     has_alpha = getattr(exemplar, "alpha", None) is not None
     fate = "carried" if alpha is not None else "lost" if has_alpha else "none"

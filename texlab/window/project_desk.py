@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QFileDialog
 
+from texlab.columns.status import known_numbers
 from texlab.storage.projects import SUFFIX, project_of
 
 if TYPE_CHECKING:
@@ -45,17 +46,19 @@ class ProjectDesk:
         """Save the session in a file."""
         session = self._controller.session
         state, selected = session.state, session.selected_id
-        images = {}
+        images, measures = {}, {}
         for column in state.columns:
             scene = self._controller.column_scene(column.id)
             if scene is not None and scene.result is not None and not scene.draft:
                 images[column.id] = scene.result.image
+                measures[column.id] = known_numbers(scene) or {}
         layout = self._settings.text("layout")
 
         def work(task: Task) -> str:
             from texlab_core.documents.project import save_project
 
-            save_project(path, project_of(state, selected, images, layout, for_student=for_student))
+            made = project_of(state, selected, images, layout, measures=measures, for_student=for_student)
+            save_project(path, made)
             return path
 
         def done(saved: str) -> None:

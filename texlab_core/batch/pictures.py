@@ -74,7 +74,7 @@ def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None =
     digest.update(whole.tobytes())
     suffix = ".png" if result.volume is None else ".tif"
     return Picture(
-        png=encode_result(result, f"result{suffix}", bits=bits, recipe=written_recipe(result)),
+        png=encode_result(result, f"result{suffix}", bits=bits, recipe=written_recipe(result, taken)),
         suffix=suffix,
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from texlab_core.documents.embedding import MAX_DATA_DEPTH, embed
 from texlab_core.documents.presets import preset_from_json
 from texlab_core.documents.reading import parse_input
+from texlab_core.documents.recipe import known_measures, measures_from_json
 from texlab_core.engine.inputs import Crop, ImageInput, Input
 from texlab_core.engine.job import Job, check_seed, check_size
 from texlab_core.engine.params import frozen_mapping
@@ -53,7 +54,7 @@ _NAMES = re.compile(
 )
 _KEYS = ("format", "version", "versions", "exemplar", "scale", "crop", "seed", "size", "columns", "chosen",
          "presets", "notes", "layout")  # fmt: skip
-_COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "result")
+_COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "seed", "pinned", "result", "measures")
 _PIXELS = ("source", "pixels", "alpha")
 
 
@@ -77,6 +78,12 @@ class ProjectColumn:
         Its name, "" for the method's.
     result
         The picture of its finished result as a PNG file, b"" for none.
+    seed
+        Its own, or None for the project's.
+    pinned
+        Whether it is kept in front.
+    measures
+        Numbers about the result by the ids of their measures.
     """
 
     method: str
@@ -85,6 +92,9 @@ class ProjectColumn:
     size: tuple[int, ...] | None = None
     title: str = ""
     result: bytes = b""
+    seed: int | None = None
+    pinned: bool = False
+    measures: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +143,8 @@ class Project:
         if self.exemplar is not None and any(spec.name == "exemplar" for spec in method.inputs):
             inputs["exemplar"] = as_exemplar(self.exemplar, scale=self.scale, crop=self.crop)
         size = column.size or default_size(self.size, method.dimensions)
-        return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=self.seed)
+        seed = self.seed if column.seed is None else column.seed
+        return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)
 
 
 def save_project(path: str | os.PathLike[str], project: Project) -> None:
@@ -176,6 +187,9 @@ def encode_project(project: Project) -> bytes:
                 "parameters": column.params.to_json(),
                 "inputs": {role: _put(each, inputs) for role, each in column.inputs.items()},
                 "size": None if column.size is None else size_to_json(column.size),
+                "seed": column.seed,
+                "pinned": column.pinned,
+                "measures": known_measures(column.measures),
                 "result": bool(column.result),
             }
             for column in project.columns
@@ -283,9 +297,11 @@ class _Reader:
         parameters, inputs = data.get("parameters"), data.get("inputs")
         if not isinstance(parameters, dict) or not isinstance(inputs, dict):
             raise ProjectError("parameters and inputs of a column must be objects.")
-        size, result = data.get("size"), data.get("result")
-        if not isinstance(result, bool):
-            raise ProjectError(f"result: must be true or false, got {strict_json.shorten(result)}.")
+        size, seed = data.get("size"), data.get("seed")
+        result, pinned = data.get("result"), data.get("pinned", False)
+        for key, value in (("result", result), ("pinned", pinned)):
+            if not isinstance(value, bool):
+                raise ProjectError(f"{key}: must be true or false, got {strict_json.shorten(value)}.")
         picture = self._files.get(f"results/{place}.png", b"") if result else b""
         if result and not picture.startswith(b"\x89PNG"):
             raise ProjectError(f"the result of column {place + 1} is missing.")
@@ -296,6 +312,9 @@ class _Reader:
             size=None if size is None else check_size(size_from_json(size, method.dimensions), method.dimensions),
             title=printable(_text(data, "title", _MAX_TITLE)),
             result=picture,
+            seed=None if seed is None else check_seed(seed),
+            pinned=pinned,
+            measures=measures_from_json(data.get("measures", {})),
         )
 
     def _inputs(self, data: dict[str, Any], method: Method) -> dict[str, Input]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from texlab_core.documents.beside import MAX_BYTES, read_beside
 from texlab_core.documents.embedding import MAX_DATA_DEPTH
-from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput
+from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput, measures_from_json
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import check_seed, check_size
 from texlab_core.engine.params import frozen_mapping
@@ -208,6 +208,7 @@ def _recipe(data: Any) -> Recipe:
         seed=check_seed(data.get("seed")),
         versions=_versions(data.get("versions", {})),
         inputs=_inputs(_get(data, "inputs", dict), method),
+        measures=measures_from_json(data.get("measures", {})),
     )
 
 

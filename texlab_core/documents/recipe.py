@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.embedding import MAX_EMBEDDED, MAX_USED, embed, unpack_arrays, unpack_pixels
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput, ImageInput, Input
 from texlab_core.engine.job import Job
+from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.run import versions
 from texlab_core.engine.sizes import size_to_json
 from texlab_core.errors import InputError, RecipeError
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from texlab_core.images.formats.decoded import Depth
 
 VERSION = 1
+MAX_MEASURES = 256
+MAX_MEASURE_NAME = 80
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,6 +195,9 @@ class Recipe:
         Of the program and the libraries that made the result.
     inputs
         By role.
+    measures
+        What was known of the result when it was saved: numbers by the id of their measure, some of which may be of
+        packages that are not installed here. They decide nothing.
     """
 
     method: str
@@ -199,6 +206,7 @@ class Recipe:
     seed: int
     versions: Mapping[str, str]
     inputs: Mapping[str, RecipeInput]
+    measures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def missing(self) -> tuple[RecipeInput, ...]:
@@ -251,14 +259,23 @@ class Recipe:
             raise RecipeError(f"The recipe cannot be followed: {error}") from error
 
 
-def written_recipe(result: Result) -> str:
-    """Return the recipe of a result as files carry it: JSON on one line."""
-    return packed(recipe_json(result))
+def written_recipe(result: Result, measures: Mapping[str, float] | None = None) -> str:
+    """Return the recipe of a result as files carry it: JSON on one line; see :func:`recipe_json`."""
+    return packed(recipe_json(result, measures))
 
 
-def recipe_json(result: Result) -> dict[str, Any]:
-    """Return the recipe of a result as JSON data, with its inputs."""
+def recipe_json(result: Result, measures: Mapping[str, float] | None = None) -> dict[str, Any]:
+    """Return the recipe of a result as JSON data, with its inputs.
+
+    Parameters
+    ----------
+    result
+        What was made.
+    measures
+        What is known about it, by id; None takes what its method said. Nothing is measured for it.
+    """
     job = result.job
+    known = known_measures(result.measures if measures is None else measures)
     return {
         "texlab": VERSION,
         "method": job.method,
@@ -266,9 +283,26 @@ def recipe_json(result: Result) -> dict[str, Any]:
         "size": size_to_json(job.size),
         "seed": job.seed,
         "versions": dict(result.versions),
+        **({"measures": known} if known else {}),
         # One of them may be larger, so that all together stay within what is read.
         "inputs": {
             role: embed(each, used=MAX_USED if role == "exemplar" else MAX_EMBEDDED)
             for role, each in job.inputs.items()
         },
     }
+
+
+def known_measures(measures: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers that JSON can hold."""
+    return {name: float(value) for name, value in measures.items() if math.isfinite(value)}
+
+
+def measures_from_json(data: object) -> Mapping[str, float]:
+    """Return numbers by the ids of their measures; raises ``RecipeError`` when they are something else."""
+    usable = isinstance(data, dict) and len(data) <= MAX_MEASURES
+    for name, value in data.items() if usable and isinstance(data, dict) else ():
+        is_name = len(name) <= MAX_MEASURE_NAME and name.isprintable()
+        usable = usable and is_name and isinstance(value, int | float) and not isinstance(value, bool)
+    if not usable or not isinstance(data, dict):
+        raise RecipeError("measures must be a few numbers by name.")
+    return frozen_mapping(known_measures(data))

@@ -52,6 +52,7 @@ def save_result(
     maps: str | os.PathLike[str] | None = None,
     spare: Iterable[str | os.PathLike[str]] = (),
     quality: int | None = None,
+    measures: Mapping[str, float] | None = None,
 ) -> tuple[str, ...]:
     """Save a result's image, or its volume, with its recipe, and its maps: all of it or nothing.
 
@@ -75,6 +76,8 @@ def save_result(
         Files that no map may overwrite.
     quality
         1 to 100, for formats that can lose something; see :func:`encode_image`.
+    measures
+        Numbers about it by id that are known already, kept in the recipe; None takes what its method said.
 
     Returns
     -------
@@ -90,7 +93,7 @@ def save_result(
     """
     bits = result_bits(result, path) if bits is None else bits
     suffix = check_result_format(path, bits, len(result.job.size))
-    held = recipe_json(result)
+    held = recipe_json(result, measures)
     recipe = packed(held)
     notes = kept_notes(held["inputs"])
     made = {} if maps is None else map_files(result, Path(maps), spare=[path, sidecar(path), *spare])

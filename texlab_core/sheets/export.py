@@ -55,11 +55,14 @@ class Item:
         For names and captions; the method's when empty.
     result
         What the job gave, when that is known already.
+    measures
+        Numbers about that result by id, when they are known already; its recipe keeps them.
     """
 
     job: Job
     title: str = ""
     result: Result | None = None
+    measures: Mapping[str, float] | None = None
 
     @property
     def named(self) -> Named:
@@ -136,7 +139,7 @@ def selection(
                     raise InputError(f"An export has at most {MOST_FILES} files; ask for fewer seeds or sizes.")
                 same = size == item.job.size and seed == item.job.seed
                 job = item.job if same else dataclasses.replace(item.job, size=size, seed=seed)
-                found.append(Item(job, item.title, item.result if same else None))
+                found.append(dataclasses.replace(item, job=job) if same else Item(job, item.title))
     return tuple(found)
 
 
@@ -210,7 +213,7 @@ def run_export(
         check_one(export, item, path)
         tell = _teller(on_progress, index, len(items))
         result = item.result or run(item.job, tell, should_stop, cache=cache)
-        made = _files(export, result, path)
+        made = _files(export, result, path, item.measures)
         held += sum(map(len, made.values()))
         if held > _MOST_BYTES:
             raise InputError(
@@ -274,9 +277,9 @@ def _is_beside(export: Export, path: Path) -> bool:
     return export.recipe == "beside" or (export.recipe == "inside" and not holds_recipe(path))
 
 
-def _files(export: Export, result: Result, path: Path) -> dict[Path, bytes]:
+def _files(export: Export, result: Result, path: Path, measures: Mapping[str, float] | None) -> dict[Path, bytes]:
     bits = result_bits(result, path) if export.bits is None else export.bits
-    recipe = written_recipe(result)
+    recipe = written_recipe(result, measures)
     alpha = carried_alpha(result) if result.volume is None and can_hold_alpha(path) else None
     inside = recipe if export.recipe == "inside" else None
     data = encode_result(result, path, bits=bits, alpha=alpha, quality=export.quality, recipe=inside)

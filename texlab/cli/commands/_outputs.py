@@ -11,7 +11,7 @@ from texlab.cli.terminal import interrupted
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from texlab.cli.parser import Parser
@@ -57,8 +57,20 @@ def check_outputs(args: argparse.Namespace, bits: Bits | None, dimensions: int =
     return Outputs(image, None if args.maps is None else output_folder(args.maps), bits)
 
 
-def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
-    """Run a job and save what it makes; the sources to ``keep`` are not overwritten by maps."""
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A result, its numbers by id, and what is wrong with it as JSON data, where that was asked for."""
+
+    result: Result
+    measures: Mapping[str, float]
+    findings: Sequence[dict[str, Any]]
+
+
+def make(job: Job, outputs: Outputs, keep: Sequence[str] = (), *, measured: bool = False) -> Made:
+    """Run a job, measure what it makes if that is wanted, and save it with the numbers that are known.
+
+    The sources to ``keep`` are not overwritten by maps.
+    """
     from texlab_core.documents.record import carried_alpha, save_result
     from texlab_core.engine.run import run
     from texlab_core.images.formats.writing import can_hold_alpha
@@ -67,8 +79,27 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = ()) -> Result:
         result = run(job, show, interrupted)
     flat = result.volume is None and can_hold_alpha(outputs.image)
     alpha = carried_alpha(result) if flat else None
-    kept = save_result(result, outputs.image, bits=outputs.bits, alpha=alpha, maps=outputs.maps, spare=keep)
-    return replace(result, notes=(*result.notes, *kept))
+    made = _measured(result) if measured else Made(result, result.measures, ())
+    kept = save_result(
+        result,
+        outputs.image,
+        bits=outputs.bits,
+        alpha=alpha,
+        maps=outputs.maps,
+        spare=keep,
+        measures=made.measures,
+    )
+    return replace(made, result=replace(result, notes=(*result.notes, *kept)))
+
+
+def _measured(result: Result) -> Made:
+    from texlab_core.findings.diagnosis import findings_of
+    from texlab_core.measures.registry import measure_all
+    from texlab_core.measures.subject import PreparedCache, Subject
+
+    cache = PreparedCache()
+    measures = measure_all(Subject.of_result(result, cache, interrupted))
+    return Made(result, measures, [each.to_json() for each in findings_of(result, cache, interrupted)])
 
 
 def _foretold(job: Job) -> str:
@@ -82,27 +113,22 @@ def _foretold(job: Job) -> str:
     return f"{job.method}, {in_words(expected)}"
 
 
-def summary_of(result: Result, outputs: Outputs) -> dict[str, Any]:
+def summary_of(made: Made, outputs: Outputs) -> dict[str, Any]:
     """Return what was made as JSON data."""
     from texlab_core.documents.record import summary
-    from texlab_core.findings.diagnosis import findings_of
-    from texlab_core.measures.registry import measure_all
-    from texlab_core.measures.subject import PreparedCache, Subject
 
-    cache = PreparedCache()
-    measures = measure_all(Subject.of_result(result, cache, interrupted))
-    findings = [each.to_json() for each in findings_of(result, cache, interrupted)]
-    return summary(result, outputs.image, measures) | {"findings": findings}
+    return summary(made.result, outputs.image, made.measures) | {"findings": made.findings}
 
 
-def described(result: Result, outputs: Outputs) -> str:
+def described(made: Made, outputs: Outputs) -> str:
     """Return what was made in a few lines for people."""
     from texlab_core.engine.sizes import size_text
 
+    result = made.result
     job = result.job
-    made = f"{size_text(job.size)} by {job.method}, seed {job.seed}, in {result.elapsed_s:.2f} s"
+    first = f"{size_text(job.size)} by {job.method}, seed {job.seed}, in {result.elapsed_s:.2f} s"
     read = dict.fromkeys(note for each in result.job.inputs.values() for note in getattr(each, "notes", ()))
-    return "\n  ".join([f"{outputs.image}: {made}.", *read, *result.notes, *_saved(result, outputs)])
+    return "\n  ".join([f"{outputs.image}: {first}.", *read, *result.notes, *_saved(result, outputs)])
 
 
 def _saved(result: Result, outputs: Outputs) -> list[str]:

@@ -53,11 +53,11 @@ def execute(args: argparse.Namespace) -> int:
     size = None if args.size is None else parse_result_size(args.size, 2)
     check_result_format(args.out)
     outputs = Outputs(output_file(args.out), None, None)
-    result = make(example.job(size), outputs)
+    made = make(example.job(size), outputs, measured=args.json)
     if args.json:
-        print(json.dumps(summary_of(result, outputs) | {"failure": example.to_json()}))
+        print(json.dumps(summary_of(made, outputs) | {"failure": example.to_json()}))
     else:
-        print("\n".join([described(result, outputs), *_described(example)]))
+        print("\n".join([described(made, outputs), *_described(example)]))
     return 0
 
 

@@ -110,9 +110,9 @@ def execute(args: argparse.Namespace) -> int:
     if "reach" not in parse_settings(args.set):
         params, said = with_reach(params, size)
     job = Job(method=METHOD, inputs=inputs, params=params, size=size, seed=seed)
-    result = make(job, outputs, keep=sources)
-    result = replace(result, notes=(*result.notes, *said, *_kept(outputs.image)))
-    print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
+    made = make(job, outputs, keep=sources, measured=args.json)
+    made = replace(made, result=replace(made.result, notes=(*made.result.notes, *said, *_kept(outputs.image))))
+    print(json.dumps(summary_of(made, outputs)) if args.json else described(made, outputs))
     return 0
 
 

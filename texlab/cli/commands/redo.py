@@ -61,17 +61,26 @@ def execute(args: argparse.Namespace) -> int:
     for image in given.values():
         refuse_overwriting(outputs.image, image)
     _check_missing(args.result, recipe, given)
-    result = make(recipe.job(given=given), outputs, keep=tuple(given.values()))
+    made = make(recipe.job(given=given), outputs, keep=tuple(given.values()), measured=args.json)
     same = _same_bits(before, outputs, dimensions)
     if args.json:
-        print(json.dumps(summary_of(result, outputs) | {"same_bits": same}))
+        print(json.dumps(summary_of(made, outputs) | {"same_bits": same, "measures_then": dict(recipe.measures)}))
     else:
-        print(described(result, outputs))
+        print(described(made, outputs))
+        if then := _measured_then(recipe):
+            print(f"  {args.result} was saved with {then}.")
         if same:
             print(f"  The same bits as in {args.result}.")
     if same is False:
         complain(_difference(args.result, recipe))
     return 0
+
+
+def _measured_then(recipe: Recipe) -> str:
+    """Return the numbers that the file holds, as they are written everywhere."""
+    from texlab_core.measures.registry import measures, written
+
+    return ", ".join(written(recipe.measures, measures()))
 
 
 def _given(args: argparse.Namespace) -> dict[str, str]:

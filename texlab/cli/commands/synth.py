@@ -79,8 +79,8 @@ def execute(args: argparse.Namespace) -> int:
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
     )
-    result = make(job, outputs, keep=sources)
-    print(json.dumps(summary_of(result, outputs)) if args.json else described(result, outputs))
+    made = make(job, outputs, keep=sources, measured=args.json)
+    print(json.dumps(summary_of(made, outputs)) if args.json else described(made, outputs))
     return 0
 
 
