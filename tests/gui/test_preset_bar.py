@@ -45,8 +45,8 @@ class Bench:
         self.session = Session()
         self.controller = Controller(self.session)
         self.manager = PresetManager(self.window, self.bar)
-        carrier = Carrier(self.controller, self.session.select, *[self.never] * 4)
-        self.manager.intention.connect(carrier.carry_out)
+        self.carrier = Carrier(self.controller, self.session.select, *[self.never] * 4)
+        self.manager.intention.connect(self.carrier.carry_out)
         self.problems, self.said = [], []
         self.controller.problem.connect(self.problems.append)
         self.controller.said.connect(self.said.append)
