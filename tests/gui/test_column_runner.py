@@ -123,6 +123,16 @@ def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
     assert [each.cell.job.key for each in points] == [each.result.job.key for each in (first, second)]
 
 
+def test_what_a_drag_makes_is_not_kept_as_a_result(runner: Any) -> None:
+    start(runner, draft=True)
+    # At full size it has the job of the result, but neither its stages nor a state to go on from.
+    runner._finished(finished((96, 128), 0.01, draft=True))
+    assert (len(runner._shared.kept), runner.scene.history, runner.resumable) == (0, (), False)
+    start(runner)
+    runner._finished(finished((96, 128), 0.01))
+    assert (len(runner._shared.kept), len(runner.scene.history)) == (1, 1)
+
+
 def test_a_draft_of_the_methods_own_is_no_result(runner: Any) -> None:
     start(runner)
     image = np.zeros((8, 8, 3), np.float32)

@@ -6,6 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from texlab_core.files.page import page_end, page_head
 from texlab_core.findings.finding import HINT
 from texlab_core.measures.registry import measures as known_measures
 
@@ -102,19 +103,8 @@ def page_of(name: str, note: str, variants: Sequence[str], rows: Rows, total: in
     headers.append('<th class="number"><button>Seed</button></th>')
     headers += [_heading(name) for name in measures]
     headers.append("<th><button>Findings</button></th>")
-    yield f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src 'self' file:; \
-style-src 'unsafe-inline'; script-src 'unsafe-inline'">
-<title>{escape(name)}</title>
-<style>{_STYLE}</style>
-</head>
-<body>
-<h1>{escape(name)}</h1>
-<p>{escape(note)}</p>
+    yield page_head(name, _STYLE)
+    yield f"""<p>{escape(note)}</p>
 <p>{", ".join(counts)}. The numbers are in <a href="report.csv">report.csv</a> too. Each picture carries its
 recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 <form hidden>
@@ -131,12 +121,10 @@ recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 """
     for row in rows:
         yield _row(row, measures)
-    yield f"""</tbody>
+    yield """</tbody>
 </table>
-<script>{_SCRIPT}</script>
-</body>
-</html>
 """
+    yield page_end(_SCRIPT)
 
 
 def _heading(name: str) -> str:

@@ -198,11 +198,8 @@ def read_preset(source: Path | str | bytes, *, what: str | None = None) -> Prese
     PresetError
         With one sentence when it cannot be read, is malformed, newer or hostile.
     """
-    if isinstance(source, Path):
-        name = f"the preset {source.name or source}" if what is None else what
-        return preset_from_json(strict_json.load(source, what=name, error=PresetError), what=name)
-    name = "the preset" if what is None else what
-    return preset_from_json(strict_json.loads(source, what=name, error=PresetError), what=name)
+    data, name = strict_json.read(source, "the preset", what=what, error=PresetError)
+    return preset_from_json(data, what=name)
 
 
 def write_preset(preset: Preset, path: str | os.PathLike[str], *, replace: bool = True) -> None:

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from texlab_core.errors import InputError
@@ -111,6 +112,29 @@ def load(
     except (OSError, ValueError) as bad:
         raise error(f"{sentence_case(name)} cannot be read ({reason(bad)}).") from bad
     return loads(source, what=name, max_bytes=max_bytes, max_depth=max_depth, error=error)
+
+
+def read(
+    source: Path | str | bytes, kind: str, *, what: str | None = None, error: type[InputError] = InputError
+) -> tuple[Any, str]:
+    """Return the data of a document, and what messages call it.
+
+    Parameters
+    ----------
+    source
+        A file (a ``Path``), or the text itself.
+    kind
+        What it is, as in "the preset".
+    what
+        What messages call it; None makes that of the kind and the file's name.
+    error
+        The class of what is raised when it cannot be read or is refused.
+    """
+    if isinstance(source, Path):
+        name = f"{kind} {source.name or source}" if what is None else what
+        return load(source, what=name, error=error), name
+    name = kind if what is None else what
+    return loads(source, what=name, error=error), name
 
 
 def dumps(data: object) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from texlab_core.documents.lesson_parts import LessonError
 from texlab_core.documents.lessons import PAPERS, title_of_method
+from texlab_core.files.page import page_end, page_head
 from texlab_core.files.whole import write_whole
 from texlab_core.lessons.running import run_lesson
 
@@ -144,19 +145,7 @@ def page_of(lesson: Lesson, sections: list[str]) -> str:
         f'<option value="{place}">{place + 1}. {escape(step.sentence)}</option>'
         for place, step in enumerate(lesson.steps)
     )
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src 'self' file:; \
-style-src 'unsafe-inline'; script-src 'unsafe-inline'">
-<title>{escape(lesson.title)}</title>
-<style>{_STYLE}</style>
-</head>
-<body>
-<h1>{escape(lesson.title)}</h1>
-<p class="meta">{escape(about)}</p>
+    body = f"""<p class="meta">{escape(about)}</p>
 <p>{escape(lesson.summary)}</p>
 <nav hidden>
 <button id="back" type="button">Back</button>
@@ -165,10 +154,8 @@ style-src 'unsafe-inline'; script-src 'unsafe-inline'">
 <select id="jump" aria-label="Go to a step">{options}</select>
 <label><input id="all" type="checkbox"> all steps on one page</label>
 </nav>
-{"".join(sections)}<script>{_SCRIPT}</script>
-</body>
-</html>
-"""
+{"".join(sections)}"""
+    return page_head(lesson.title, _STYLE) + body + page_end(_SCRIPT)
 
 
 def _section(step: LessonStep, made: StepResult, number: int, folder: Path) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
@@ -22,6 +21,7 @@ from texlab_core.transforms.gabor_bank import CHANNELS, OCTAVES, ORIENTATIONS
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure, HistogramKind
 
@@ -112,11 +112,8 @@ def read_code(source: Path | str | bytes, *, what: str | None = None) -> CodeFil
     CodeError
         With one sentence when it cannot be read, is malformed, newer or hostile.
     """
-    if isinstance(source, Path):
-        name = f"the code {source.name}" if what is None else what
-        return code_from_json(strict_json.load(source, what=name, error=CodeError), what=name)
-    name = "the code" if what is None else what
-    return code_from_json(strict_json.loads(source, what=name, error=CodeError), what=name)
+    data, name = strict_json.read(source, "the code", what=what, error=CodeError)
+    return code_from_json(data, what=name)
 
 
 def write_code(code: MsgCode, path: str | os.PathLike[str], exemplar: str = "") -> None:
