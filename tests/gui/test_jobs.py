@@ -319,3 +319,18 @@ def test_what_is_being_written_is_waited_for(qapp: Any, monkeypatch: pytest.Monk
     threading.Timer(0.2, go_on.set).start()
     errands.close()
     assert written == ["all of it"]
+
+
+def test_all_is_idle_only_after_the_last_errand(qtbot: Any) -> None:
+    go_on = threading.Event()
+    idle: list[tuple[str, ...]] = []
+    errands = Errands()
+    errands.idle.connect(lambda: idle.append(errands.names))
+    errands.run("slow", lambda task: go_on.wait(60))
+    errands.run("quick", lambda task: None)
+    qtbot.waitUntil(lambda: errands.names == ("slow",))
+    assert (idle, errands.busy) == ([], True)
+    go_on.set()
+    qtbot.waitUntil(lambda: bool(idle))
+    assert (idle, errands.busy) == ([()], False)
+    errands.close()

@@ -12,6 +12,7 @@ from PIL import Image
 
 from texlab.state.session import Column, Session, State
 from texlab.storage.reading import Choice
+from texlab.window.exchange import Exchange
 from texlab.window.opener import Opener
 from texlab_core.documents.presets import Preset, write_preset
 from texlab_core.documents.reading import read_recipe
@@ -187,6 +188,22 @@ def test_a_saved_result_brings_its_job_back(bench: Bench, tmp_path: Path) -> Non
     bench.opener.open_failure("tiling")
     bench.background.go_on()
     assert bench.background.asking == 1
+
+
+def test_the_newest_copy_stays_on_the_clipboard(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    copied: list[Any] = []
+    monkeypatch.setattr("texlab.window.exchange.put_on_clipboard", lambda png, picture: copied.append(picture))
+    pictures = {column: np.full((4, 5, 3), column, np.uint8) for column in (1, 2)}
+    bench.background.column_scene = lambda column: SimpleNamespace(picture=pictures[column], result=None)
+    window: Any = None
+    exchange = Exchange(window, window, bench.background, bench.opener)
+    exchange.copy(1)
+    exchange.copy(2)
+    # The later one is encoded first.
+    bench.background.waiting.reverse()
+    bench.background.go_on()
+    assert [picture is pictures[2] for picture in copied] == [True]
+    assert bench.background.news == ["Copied 5 x 4 pixels."]
 
 
 def test_a_preset_is_read_once(bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

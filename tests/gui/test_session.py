@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from texlab.runs.drafts import SMALLEST_DRAFT, draft_size
-from texlab.state.changes import fitting, rescaled, sample_of, with_code, with_crop_of
+from texlab.state.changes import fitting, fresh_ids, rescaled, sample_of, with_code, with_crop_of
 from texlab.state.difference import difference
 from texlab.state.session import MAX_HISTORY, Column, Sample, Session, State
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput, hash_arrays
@@ -241,6 +241,14 @@ def test_a_code_goes_to_the_chosen_column_of_msg() -> None:
     two = dataclasses.replace(state, columns=(*state.columns, Column(5, "msg", MSG.params())), next_id=6)
     assert with_code(two, code, 5)[1] == 5
     assert with_code(two, code, 1)[1] == 4
+
+
+def test_an_id_is_never_used_again() -> None:
+    before, _ = states()
+    state = fresh_ids(before, before.next_id)
+    taken = range(before.next_id, before.next_id + len(before.columns))
+    assert ([column.id for column in state.columns], state.next_id) == ([*taken], taken.stop)
+    assert [column.params for column in state.columns] == [column.params for column in before.columns]
 
 
 # Drafts.
