@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from texlab.docks.dependence.panels import Panel
     from texlab.state.scene import ColumnScene, Probe, Scene
-    from texlab.style.theme import Theme
     from texlab_core.stats.dependence import Rectangle
 
 SHOWN = ("exemplar", "result", "result beside it")
@@ -130,11 +129,6 @@ class DependenceDock(FramedDock):
         self.setFocusProxy(self.views[0].joint)
         self.curves.setChecked(True)
         self._pair_changed(quietly=True)
-
-    def paint_theme(self, theme: Theme) -> None:
-        """Give the panels their colours."""
-        for view in self.views:
-            view.set_theme(theme)
 
     # Asking and showing.
 
