@@ -87,19 +87,22 @@ class Oracle:
         places = [(o, self.at(self.known, y + o[0], x + o[1], self.tiles)) for o in self.offsets]
         return [offset for offset, place in places if place is not None and self.known[place]]
 
-    def is_candidate(self, y: int, x: int, offsets: list[tuple[int, int]]) -> bool:
-        if self.region is not None and not self.region[y, x]:
-            return False
-        if self.hole is not None:
-            for dy, dx in [*self.offsets, (0, 0)]:
-                place = self.at(self.hole, y + dy, x + dx, self.periodic)
-                if place is not None and self.hole[place]:
-                    return False
-        return all(self.at(self.exemplar, y + dy, x + dx, self.periodic) is not None for dy, dx in offsets)
-
     def candidates(self, offsets: list[tuple[int, int]]) -> list[tuple[int, int]]:
+        """Return the places whose windows lie inside of the exemplar and of the region, and touch no hole."""
         height, width = self.exemplar.shape[:2]
-        return [(y, x) for y in range(height) for x in range(width) if self.is_candidate(y, x, offsets)]
+        rows, columns = np.indices((height, width))
+        allowed = np.ones((height, width), bool) if self.region is None else self.region.astype(bool)
+
+        def inside(dy: int, dx: int) -> np.ndarray:
+            y, x = rows + dy, columns + dx
+            return self.periodic | ((y >= 0) & (y < height) & (x >= 0) & (x < width))
+
+        for offset in offsets:
+            allowed = allowed & inside(*offset)
+        for dy, dx in [*self.offsets, (0, 0)] if self.hole is not None else []:
+            hole = self.hole[(rows + dy) % height, (columns + dx) % width].astype(bool)
+            allowed = allowed & ~(inside(dy, dx) & hole)
+        return [(y, x) for y, x in np.argwhere(allowed).tolist()]
 
     def search(self, y: int, x: int) -> tuple[list[tuple[int, int]], float]:
         """Return the match set in raster order, and d_min."""
@@ -115,14 +118,18 @@ class Oracle:
             np.add.outer(*axis) for axis in zip(np.array(candidates).T, np.array(offsets).T, strict=True)
         )
         windows = self.exemplar[rows % height, columns % width].astype(np.int64)
-        distances = [self.distance(weights, target, window) for window in windows]
+        distances = self.distances(weights, target, windows)
         return self.within(candidates, distances, int(weights.sum()) * self.image.shape[2])
 
-    def distance(self, weights: np.ndarray, target: np.ndarray, window: np.ndarray) -> float | int:
+    def distances(self, weights: np.ndarray, target: np.ndarray, windows: np.ndarray) -> list[float] | list[int]:
+        """Return the distance of every candidate's window (offsets, C) to the target (offsets, C)."""
         if self.criterion == "sad":
-            return int((weights * abs(target - window)).sum())
+            return (weights * abs(target - windows)).sum((1, 2)).tolist()
         if self.criterion != "ncc":
-            return int((weights * (target - window) ** 2).sum())
+            return (weights * (target - windows) ** 2).sum((1, 2)).tolist()
+        return [self.correlation_distance(weights, target, window) for window in windows]
+
+    def correlation_distance(self, weights: np.ndarray, target: np.ndarray, window: np.ndarray) -> float:
         total = int(weights.sum()) * target.shape[1]
         t, e = int((weights * target).sum()), int((weights * window).sum())
         of_target = total * int((weights * target**2).sum()) - t * t
