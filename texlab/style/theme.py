@@ -185,6 +185,10 @@ def stylesheet(theme: Theme, points: float) -> str:
 
 def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
+    sheet = stylesheet(theme, application.font().pointSizeF())
+    # Every widget is polished anew at each call: a theme that is there already costs half a second in a full window.
+    if application.styleSheet() == sheet:
+        return
     if application.property("texlab-style") is None:
         # Once: every further style would stay in memory.
         application.setStyle("Fusion")
@@ -199,7 +203,7 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     fields.setColor(QPalette.ColorRole.Base, QColor(theme.raised if theme.name == "dark" else theme.base))
     for kind in ("QLineEdit", "QAbstractSpinBox"):
         application.setPalette(fields, kind)  # type: ignore[arg-type]
-    application.setStyleSheet(stylesheet(theme, application.font().pointSizeF()))
+    application.setStyleSheet(sheet)
 
 
 def set_text_size(application: QApplication, points: float, theme: Theme) -> None:
