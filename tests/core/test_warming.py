@@ -48,8 +48,8 @@ def test_it_stops_at_once():
     assert warm_up(lambda: True) == ()
 
 
-# Every choice and the ends of every range, in a process whose kernels are those that loading has loaded. What a size
-# decides is seen at the parameters that a method starts with; the others take less of the exemplar.
+# Every choice and the ends of every range, in a process whose kernels are those that loading has loaded. What a
+# size decides is seen at the parameters that a method starts with; the others take less of the exemplar.
 NOTHING_ELSE = """
 import gc, numpy as np
 from numba.core.dispatcher import Dispatcher

@@ -186,7 +186,7 @@ def stylesheet(theme: Theme, points: float) -> str:
 def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
     sheet = stylesheet(theme, application.font().pointSizeF())
-    # Every widget is polished anew at each call: a theme that is there already costs half a second in a full window.
+    # Each call polishes every widget anew: a theme that is there already would cost half a second in a full window.
     if application.styleSheet() == sheet:
         return
     if application.property("texlab-style") is None:
