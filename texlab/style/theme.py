@@ -186,7 +186,7 @@ def stylesheet(theme: Theme, points: float) -> str:
 def apply_theme(application: QApplication, theme: Theme) -> None:
     """Give the whole application the theme (pyqtgraph's items take theirs from ``Theme`` themselves)."""
     sheet = stylesheet(theme, application.font().pointSizeF())
-    # Each call polishes every widget anew: a theme that is there already would cost half a second in a full window.
+    # Each call polishes every widget anew: a theme that is there already would cost half a second.
     if application.styleSheet() == sheet:
         return
     if application.property("texlab-style") is None:
