@@ -14,6 +14,7 @@ from texlab.widgets.name_field import NameField
 from texlab.widgets.plain import set_tip
 from texlab.window.batch_desk import BatchDesk
 from texlab.window.export_desk import ExportDesk
+from texlab.window.popout_desk import PopoutDesk
 from texlab.window.project_desk import ProjectDesk
 from texlab.window.toolbar import LAYOUTS
 from texlab_core.engine.job import MAX_SEED
@@ -63,6 +64,7 @@ class Handlers(QObject):
         self._tuning = tuning
         self.batches = BatchDesk(window, controller.session)
         self.exports = ExportDesk(window, exchange.settings, controller)
+        self.popouts = PopoutDesk(window, exchange.settings, controller)
         self.projects = ProjectDesk(window, exchange.settings, controller)
         self._turned = ""
         self._turning = QTimer(self)
@@ -78,6 +80,7 @@ class Handlers(QObject):
         self._turning.stop()
         self.batches.close()
         self.exports.close()
+        self.popouts.close()
 
     def _by_column(self) -> dict[str, Callable[[int], Any]]:
         """Return what every command of ``COLUMN_COMMANDS`` does to a column."""
@@ -136,6 +139,7 @@ class Handlers(QObject):
             "help-window": lambda: desk.show_help("window"),
             "shortcuts": lambda: desk.show_help("shortcuts"),
             "failures": self.choose_failure,
+            "popout": self.popouts.open,
             "about": desk.show_about,
         }
         for name in self._to_column:

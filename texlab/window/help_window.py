@@ -31,7 +31,7 @@ ORDER = (
     *("index", "window", "lessons", "shortcuts"),
     *("heeger-bergen", "de-bonet", "efros-leung", "msg", "mixture", "solid"),
     *("uncoded", "car", "ac-h", "tiling", "pixels", "bands"),
-    *("measures", "findings", "laboratory", "shape-from-texture"),
+    *("measures", "findings", "popout", "laboratory", "shape-from-texture"),
     *("images", "export", "batches", "command-line"),
 )
 

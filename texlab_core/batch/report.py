@@ -8,6 +8,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.batch.page import page_of
+from texlab_core.files.wording import harmless
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,18 +47,13 @@ def table_of(rows: Rows) -> Iterator[str]:
         cells += [row.picture, row.job]
         cells += ["" if (value := (row.measures or {}).get(name)) is None else repr(value) for name in names]
         cells += [" ".join(row.findings), row.error]
-        yield _line([_harmless(cell) for cell in cells])
+        yield _line([harmless(cell) for cell in cells])
 
 
 def _line(cells: Sequence[Any]) -> str:
     out = io.StringIO()
     csv.writer(out).writerow(cells)
     return out.getvalue()
-
-
-def _harmless(cell: Any) -> Any:
-    # A spreadsheet would take a name that starts like this for a formula.
-    return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "@", "\t") else cell
 
 
 def write_report(folder: BatchFolder, plan: Plan, rows: Rows, total: int) -> tuple[Path, Path]:

@@ -1,0 +1,420 @@
+"""The pop-out test in the window: what is tested, the pictures one after the other, and what came of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QHBoxLayout,
+    QListWidget,
+    QListWidgetItem,
+    QProgressBar,
+    QPushButton,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from texlab.widgets.hidden_picture import HiddenPicture
+from texlab.widgets.number_box import WholeBox
+from texlab.widgets.plain import Label, set_tip
+from texlab.window.popout_review import PopoutReview
+from texlab_core.engine.job import MAX_SEED
+from texlab_core.popout.design import DEFAULT_REPEATS, MAX_REPEATS
+from texlab_core.popout.scoring import Answer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from PySide6.QtGui import QCloseEvent, QKeyEvent
+
+    from texlab.style.theme import Theme
+    from texlab_core.popout.making import Made
+    from texlab_core.popout.record import Record
+
+SHARES = {
+    "a half of the exemplar": 0.5,
+    "a third of the exemplar": 1 / 3,
+    "the whole exemplar, as in the paper": 1.0,
+}
+# The same for every picture: it tells nothing, and the eye forgets the picture before.
+PAUSE_MS = 500
+MAX_FEATHER = 64
+# Of fields and sentences: the dialog is as large as the window.
+WIDEST = 720
+_STEPS = 1000
+HOW = (
+    "In every picture lies a piece of the original. Click where you see it, as soon as you see it: hits, misses"
+    " and times are kept, and nothing is told before the end.\n\nSpace: you cannot tell. Arrow keys move a cross,"
+    " Enter answers there. Esc leaves the test; what was answered stays."
+)
+
+
+@dataclass(frozen=True)
+class PopoutRequest:
+    """What the user wants to test.
+
+    Parameters
+    ----------
+    columns
+        Ids of columns; none for the figures of the paper.
+    repeats
+        Pictures of each.
+    share
+        Sides of the piece over those of the exemplar.
+    feather
+        Width of the soft edge in pixels; 0 is hard.
+    seed
+        Decides seeds, places and order.
+    figures
+        Figs. 2 to 5 of De Bonet instead of columns.
+    """
+
+    columns: tuple[int, ...]
+    repeats: int
+    share: float
+    feather: int
+    seed: int
+    figures: bool = False
+
+
+class PopoutDialog(QDialog):
+    """Asks what to test, shows the pictures, and what came of it; it computes and writes nothing.
+
+    ``asked(PopoutRequest)`` to begin, ``edited(PopoutRequest)`` when a field changes, ``stopped()`` while pictures
+    are made, ``answered(Answer)`` for every picture, ``over()`` after the last one or when it is left,
+    ``table_wanted(all)`` for the table of this test or of all.
+    """
+
+    asked = Signal(object)
+    edited = Signal(object)
+    stopped = Signal()
+    answered = Signal(object)
+    over = Signal()
+    table_wanted = Signal(bool)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("popout-dialog")
+        self.setWindowTitle("Pop-out test")
+        self._made: Made | None = None
+        self._place = 0
+        self._sound = False
+        self._pause = QTimer(self)
+        self._pause.setSingleShot(True)
+        self._pause.setInterval(PAUSE_MS)
+        self._pause.timeout.connect(self._show_picture)
+        self.pages = QStackedWidget()
+        self.pages.setObjectName("popout-pages")
+        self.setup, self.making, self.ready = self._make_setup(), self._make_making(), self._make_ready()
+        self.trial, self.outcome = self._make_trial(), self._make_result()
+        for page in (self.setup, self.making, self.ready, self.trial, self.outcome):
+            self.pages.addWidget(page)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.pages)
+
+    # Pages.
+
+    def _make_setup(self) -> QWidget:
+        fields = QWidget()
+        fields.setMaximumWidth(WIDEST)
+        form = QFormLayout(fields)
+        self.columns = QListWidget()
+        self.columns.setFixedHeight(7 * self.fontMetrics().lineSpacing())
+        self.columns.itemChanged.connect(self._edited)
+        self.share = QComboBox()
+        for text, value in SHARES.items():
+            self.share.addItem(text, value)
+        self.repeats, self.feather, self.seed = WholeBox(), WholeBox(), WholeBox()
+        self.repeats.setRange(1, MAX_REPEATS)
+        self.repeats.setValue(DEFAULT_REPEATS)
+        self.feather.setRange(0, MAX_FEATHER)
+        self.feather.setSpecialValueText("hard, as in the paper")
+        self.feather.setSuffix(" px")
+        self.seed.setRange(0, min(MAX_SEED, 2**31 - 1))
+        rows = (
+            ("Methods", self.columns, "columns", "Whose results are tested, with the columns' parameters"),
+            ("Piece", self.share, "share", "How much of the original is put into each picture"),
+            (
+                "Edge",
+                self.feather,
+                "feather",
+                "Over how many pixels the piece is blended in; a hard edge may show",
+            ),
+            ("Pictures of each", self.repeats, "repeats", "More pictures make the interval narrower"),
+            ("Seed", self.seed, "seed", "Decides results, places and order; the same seed gives the same test"),
+        )
+        for label, widget, name, tip in rows:
+            widget.setObjectName(f"popout-{name}")
+            widget.setAccessibleName(label)
+            set_tip(widget, tip)
+            form.addRow(label, widget)
+        for box in (self.repeats, self.feather, self.seed):
+            box.valueChanged.connect(self._edited)
+        self.share.currentIndexChanged.connect(self._edited)
+        self.foreseen = Label("")
+        self.foreseen.setObjectName("popout-foreseen")
+        self.foreseen.setWordWrap(True)
+        self.foreseen.setMinimumHeight(3 * self.fontMetrics().lineSpacing())
+        form.addRow(self.foreseen)
+        buttons = QDialogButtonBox()
+        self.start_button = _button(buttons, "Make the pictures", "popout-start")
+        self.start_button.clicked.connect(lambda _=False: self.asked.emit(self.request()))
+        self.figures_button = _button(buttons, "Figures 2 to 5 of De Bonet", "popout-figures")
+        set_tip(self.figures_button, "Four ready-made pictures: repetition, pixels, bands, and De Bonet's own")
+        self.figures_button.clicked.connect(lambda _=False: self.asked.emit(self.request(figures=True)))
+        self.all_button = _button(buttons, "Export all tests ...", "popout-export-all")
+        set_tip(self.all_button, "Write every test that was kept as one table, CSV")
+        self.all_button.clicked.connect(lambda _=False: self.table_wanted.emit(True))
+        close = _button(buttons, "Close", "popout-close")
+        close.clicked.connect(lambda _=False: self.close())
+        form.addRow(buttons)
+        return _centred(fields)
+
+    def _make_making(self) -> QWidget:
+        page = QWidget()
+        page.setMaximumWidth(WIDEST)
+        layout = QVBoxLayout(page)
+        words = Label("All pictures are made before the first is shown: how long one takes would tell its method.")
+        words.setObjectName("popout-making")
+        words.setWordWrap(True)
+        self.bar = QProgressBar()
+        self.bar.setObjectName("popout-bar")
+        self.bar.setAccessibleName("Progress")
+        self.bar.setRange(0, _STEPS)
+        self.stop_button = QPushButton("Stop")
+        self.stop_button.setObjectName("popout-stop")
+        self.stop_button.setAutoDefault(False)
+        self.stop_button.clicked.connect(lambda _=False: self.stopped.emit())
+        for widget in (words, self.bar, self.stop_button):
+            layout.addWidget(widget)
+        return _centred(page)
+
+    def _make_ready(self) -> QWidget:
+        page = QWidget()
+        page.setMaximumWidth(WIDEST)
+        layout = QVBoxLayout(page)
+        self.how = Label("")
+        self.how.setObjectName("popout-how")
+        self.how.setWordWrap(True)
+        self.begin_button = QPushButton("Begin")
+        self.begin_button.setObjectName("popout-begin")
+        self.begin_button.clicked.connect(lambda _=False: self._begin())
+        layout.addWidget(self.how)
+        layout.addWidget(self.begin_button)
+        return _centred(page)
+
+    def _make_trial(self) -> QWidget:
+        page = QWidget()
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self.stage = HiddenPicture()
+        self.stage.pointed.connect(lambda row, column, seconds: self._take(row, column, seconds))
+        self.stage.gave_up.connect(lambda seconds: self._take(None, None, seconds))
+        self.count = Label("")
+        self.count.setObjectName("popout-count")
+        self.untold_button = QPushButton("I cannot tell (Space)")
+        self.untold_button.setObjectName("popout-untold")
+        self.untold_button.setAutoDefault(False)
+        # The keyboard stays with the picture.
+        self.untold_button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.untold_button.clicked.connect(lambda _=False: self.stage.give_up())
+        self.leave_button = QPushButton("Leave (Esc)")
+        self.leave_button.setObjectName("popout-leave")
+        self.leave_button.setAutoDefault(False)
+        self.leave_button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.leave_button.clicked.connect(lambda _=False: self._leave())
+        line = QHBoxLayout()
+        line.addWidget(self.count, 1)
+        line.addWidget(self.untold_button)
+        line.addWidget(self.leave_button)
+        layout.addWidget(self.stage, 1)
+        layout.addLayout(line)
+        return page
+
+    def _make_result(self) -> QWidget:
+        page = QWidget()
+        layout = QVBoxLayout(page)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self.review = PopoutReview()
+        self.message = Label("")
+        self.message.setObjectName("popout-message")
+        self.message.setWordWrap(True)
+        buttons = QDialogButtonBox()
+        self.table_button = _button(buttons, "Export CSV ...", "popout-export")
+        set_tip(self.table_button, "Write every picture of this test with its answer")
+        self.table_button.clicked.connect(lambda _=False: self.table_wanted.emit(False))
+        self.again_button = _button(buttons, "Another test", "popout-again")
+        self.again_button.clicked.connect(lambda _=False: self.show_setup())
+        close = _button(buttons, "Close", "popout-result-close")
+        close.clicked.connect(lambda _=False: self.close())
+        layout.addWidget(self.review, 1)
+        layout.addWidget(self.message)
+        layout.addWidget(buttons)
+        return page
+
+    def set_theme(self, theme: Theme) -> None:
+        """Give the pictures of the review their colours."""
+        self.review.picture.set_theme(theme)
+
+    # What is shown.
+
+    def set_columns(self, columns: Sequence[tuple[int, str]], seed: int) -> None:
+        """Offer columns by id and title, all ticked, and a seed."""
+        self.columns.blockSignals(True)
+        self.columns.clear()
+        for column_id, title in columns:
+            item = QListWidgetItem(title, self.columns)
+            item.setData(Qt.ItemDataRole.UserRole, column_id)
+            item.setFlags(
+                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsUserCheckable | Qt.ItemFlag.ItemIsSelectable
+            )
+            item.setCheckState(Qt.CheckState.Checked)
+        self.columns.blockSignals(False)
+        self.seed.setValue(seed)
+        self._edited()
+
+    def request(self, *, figures: bool = False) -> PopoutRequest:
+        """Return what the fields say."""
+        items = [self.columns.item(row) for row in range(self.columns.count())]
+        ticked = (each for each in items if each.checkState() == Qt.CheckState.Checked)
+        return PopoutRequest(
+            columns=tuple(int(each.data(Qt.ItemDataRole.UserRole)) for each in ticked),
+            repeats=self.repeats.value(),
+            share=float(self.share.currentData()),
+            feather=self.feather.value(),
+            seed=self.seed.value(),
+            figures=figures,
+        )
+
+    def _edited(self) -> None:
+        self.edited.emit(self.request())
+
+    def show_foreseen(self, sentence: str, *, sound: bool) -> None:
+        """Say what the test will be, or why it cannot be."""
+        self.foreseen.setText(sentence)
+        self.start_button.setEnabled(sound)
+
+    @property
+    def resting(self) -> bool:
+        """Whether no test is being made or given."""
+        return self.pages.currentWidget() in (self.setup, self.outcome)
+
+    def show_setup(self, sentence: str = "") -> None:
+        """Go back to the fields; a sentence says why."""
+        self.pages.setCurrentWidget(self.setup)
+        self._edited()
+        if sentence:
+            self.foreseen.setText(sentence)
+
+    def show_making(self) -> None:
+        """Show that the pictures are made."""
+        self.bar.setValue(0)
+        self.pages.setCurrentWidget(self.making)
+
+    def show_progress(self, share: float) -> None:
+        """Show how far it is, 0 to 1."""
+        self.bar.setValue(int(share * _STEPS))
+
+    def show_test(self, made: Made) -> None:
+        """Explain the test; the pictures come when the viewer begins."""
+        self._made, self._place = made, 0
+        self.message.setText("")
+        count = len(made.pictures)
+        self.how.setText(f"{count} {'picture' if count == 1 else 'pictures'}. {HOW}")
+        self.pages.setCurrentWidget(self.ready)
+        self.begin_button.setFocus()
+
+    def show_scores(self, record: Record) -> None:
+        """Show what came of the test."""
+        self.review.show_record(record, () if self._made is None else self._made.pictures)
+        self.pages.setCurrentWidget(self.outcome)
+
+    def say(self, sentence: str) -> None:
+        """Say a sentence below the scores; while pictures are shown it waits there."""
+        self.message.setText(sentence)
+
+    # The pictures.
+
+    def _begin(self) -> None:
+        self.pages.setCurrentWidget(self.trial)
+        self.stage.setFocus()
+        self._next()
+
+    def _next(self) -> None:
+        assert self._made is not None
+        self.stage.show_picture(None)
+        self.untold_button.setEnabled(False)
+        self.count.setText(f"{self._place + 1} of {len(self._made.pictures)}")
+        self._pause.start()
+
+    def _show_picture(self) -> None:
+        if self._made is None or self.pages.currentWidget() is not self.trial:
+            return
+        self.untold_button.setEnabled(True)
+        self.stage.show_picture(self._made.pictures[self._place])
+
+    def _take(self, row: int | None, column: int | None, seconds: float) -> None:
+        assert self._made is not None
+        trial = self._made.record.trials[self._place]
+        self.answered.emit(Answer(trial.number, row, column, seconds))
+        self._place += 1
+        if self._place < len(self._made.pictures):
+            self._next()
+        else:
+            self.over.emit()
+
+    def _leave(self) -> None:
+        self._pause.stop()
+        self.stage.show_picture(None)
+        self.over.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Let Esc leave what is shown: the test first, then the window."""
+        if event.key() == Qt.Key.Key_Escape and self.pages.currentWidget() is self.trial:
+            self._leave()
+        elif event.key() == Qt.Key.Key_Escape and self.pages.currentWidget() is self.making:
+            self.stopped.emit()
+        else:
+            super().keyPressEvent(event)
+
+    def reject(self) -> None:
+        """Close; what runs is stopped first."""
+        self.close()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Stop the making, and leave a test that is given."""
+        page = self.pages.currentWidget()
+        if page is self.making:
+            self.stopped.emit()
+        elif page is self.trial:
+            self._leave()
+        elif page is self.ready:
+            self.show_setup()
+        super().closeEvent(event)
+
+
+def _centred(inside: QWidget) -> QWidget:
+    page = QWidget()
+    layout = QVBoxLayout(page)
+    line = QHBoxLayout()
+    line.addStretch(1)
+    line.addWidget(inside, 100)
+    line.addStretch(1)
+    layout.addStretch(1)
+    layout.addLayout(line)
+    layout.addStretch(1)
+    return page
+
+
+def _button(box: QDialogButtonBox, text: str, name: str) -> QPushButton:
+    button = box.addButton(text, QDialogButtonBox.ButtonRole.ActionRole)
+    button.setObjectName(name)
+    button.setAutoDefault(False)
+    return button
