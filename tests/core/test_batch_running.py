@@ -15,11 +15,12 @@ import pytest
 from tests.core.batch_tools import files_of, shape_of, small_plan
 from texlab_core.api import synthesize
 from texlab_core.batch import parcels
-from texlab_core.batch.folder import BatchFolder, file_stem
+from texlab_core.batch.folder import BatchFolder, Record, file_stem
 from texlab_core.batch.orders import make_order
-from texlab_core.batch.parcels import Packer
+from texlab_core.batch.parcels import Packer, Unpacked
 from texlab_core.batch.pictures import thumbnail
 from texlab_core.batch.places import InProcess
+from texlab_core.batch.rows import Row, Rows
 from texlab_core.batch.running import Progress, run_batch, run_jobs
 from texlab_core.documents.record import read_recipe
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput
@@ -368,6 +369,44 @@ def test_every_kind_of_input_travels() -> None:
     spoiled = {name: {key: value + 0.25 for key, value in each.items()} for name, each in sent.items()}
     with pytest.raises(InputError, match="has other values where it arrived"):
         slips["state"].unpack(spoiled)
+
+
+def test_of_large_scans_only_the_newest_stays_unpacked() -> None:
+    whole = [as_exemplar(np.full((64, 64, 1), value, np.float32)) for value in (0.1, 0.2, 0.3)]
+    unpacked, packer = Unpacked(max_bytes=40_000), Packer()
+    for scan in whole:
+        for place in range(3):
+            given = as_exemplar(scan, crop=Crop(place, 0, 8, 8))
+            slips, sent = packer.pack({"exemplar": given})
+            found = unpacked.get(slips["exemplar"], sent)
+            assert found is unpacked.get(slips["exemplar"], sent)
+            assert found.sha256 == given.sha256
+    # Crops of one scan count it once; two scans of 16 kB fit beside their crops.
+    assert len(unpacked) == 6
+    small = Unpacked(max_bytes=1)
+    small.get(slips["exemplar"], sent)
+    assert len(small) == 1
+
+
+def test_rows_are_read_when_they_are_wanted() -> None:
+    read: list[str] = []
+
+    def record(key: str) -> Record:
+        read.append(key)
+        data = dict.fromkeys(("picture", "thumbnail"), f"{key}.png") | {"findings": [], "notes": []}
+        return Record(key, data | {"measures": {"w1-pixels": 0.5}})
+
+    rows = Rows(record)
+    for place in (4, 0, 2):
+        rows.add(place, Row.of(record(f"{place:064x}")))
+    rows.add(3, Row.failed({}, "No."))
+    read.clear()
+    assert (len(rows), rows.failed, rows.measures, read) == (4, 1, ("w1-pixels",), [])
+    assert rows[1].job == f"{2:064x}"
+    assert len(read) == 1
+    assert [each.error or int(each.job, 16) for each in rows] == [0, 2, "No.", 4]
+    assert [each.error for each in rows.failures] == ["No."]
+    assert [each.job for each in rows[::3]] == [f"{0:064x}", f"{4:064x}"]
 
 
 def test_another_version_there_is_refused() -> None:

@@ -10,8 +10,9 @@ from texlab_core.documents.record import save_maps, save_result
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
+from texlab_core.files import leftovers
 from texlab_core.files import whole as files
-from texlab_core.files.whole import write_together, write_whole
+from texlab_core.files.whole import write_pieces, write_together, write_whole
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats import maps as map_files
 
@@ -53,6 +54,34 @@ def test_an_interruption_leaves_nothing_behind(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write_whole(tmp_path / "a", b"new")
     assert listed(tmp_path) == {}
+
+
+def test_a_file_of_pieces_is_the_old_one_or_the_new_one(tmp_path):
+    seen = []
+
+    def pieces(last):
+        for each in (b"one ", b"two ", last):
+            seen.append((tmp_path / "a").read_bytes())
+            yield each
+
+    write_whole(tmp_path / "a", b"old")
+    write_pieces(tmp_path / "a", pieces(b"three"))
+    assert seen == [b"old"] * 3
+    assert listed(tmp_path) == {"a": b"one two three"}
+    with pytest.raises(TypeError):
+        write_pieces(tmp_path / "a", pieces(None))
+    assert listed(tmp_path) == {"a": b"one two three"}
+    with pytest.raises(InputError, match="b: cannot be written"):
+        write_pieces(tmp_path / "missing" / "b", pieces(b""))
+
+
+def test_folders_are_cleared_unless_the_caller_has_done_so(tmp_path):
+    left = tmp_path / f".texlab-{leftovers._host()}-{2**31 - 1}-0123456789abcdef.tmp"
+    left.write_bytes(b"half")
+    write_together({tmp_path / "a": b"new"}, clears=False)
+    assert left.exists()
+    write_together({tmp_path / "a": b"new"})
+    assert not left.exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions of Unix")

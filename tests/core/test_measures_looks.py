@@ -189,6 +189,18 @@ def test_the_exemplars_part_is_computed_once_for_each_exemplar() -> None:
     assert len(calls) == 2
 
 
+def test_only_the_last_exemplars_are_kept_where_that_is_wanted() -> None:
+    cache = PreparedCache(exemplars=2)
+    for sha256 in "abc":
+        for name in ("one", "two", "three"):
+            cache.get((name, sha256), lambda: np.zeros(10))
+    assert len(cache) == 6
+    cache.get(("one", "b"), lambda: pytest.fail("still there"))
+    cache.get(("one", "d"), lambda: np.zeros(10))
+    assert len(cache) == 4, "b was used after c"
+    cache.get(("two", "b"), lambda: pytest.fail("still there"))
+
+
 def test_the_cache_lets_go_of_what_was_not_used_for_longest() -> None:
     cache = PreparedCache(max_bytes=3200)
     for name in "abc":
