@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.heeger_bergen.analysis import analyze
+from texlab_core.methods.solid.rounds import CUTS
 from texlab_core.methods.solid.slices import SlicePlan, match_slices
+from texlab_core.methods.solid.synthesis import SETTLED
 from texlab_core.stats.histogram import resample, sorted_sample
 from texlab_core.stats.solids import streaks
 from texlab_core.transforms import steerable
@@ -71,6 +74,41 @@ def test_every_band_comes_nearer_with_the_rounds(kind: str, count: int) -> None:
     assert all(values[-1] < values[0] for values in bands.values())
     means = result.curves["mean-distance"].y
     assert (np.diff(means) < 0).all()
+
+
+@pytest.mark.parametrize("name", ["stochastic-bark", "stochastic-granite", "structured-leaves"])
+def test_bands_of_even_grain_come_nearer_or_settle(name: str) -> None:
+    exemplar = as_exemplar(as_exemplar(f"gallery:{name}", scale=0.5).pixels.mean(axis=-1))
+    result = make(exemplar, (40, 40, 40), kind="mixed")
+    bands = {key: curve.y for key, curve in result.curves.items() if key.startswith("band-")}
+    assert [key for key, values in bands.items() if values[-1] > max(values[0], SETTLED)] == []
+    assert result.notes == ()
+    means = result.curves["mean-distance"].y
+    assert (np.diff(means) < 0).all()
+    assert means[-1] < means[0] / 3
+
+
+def test_an_exemplar_with_a_direction_says_that_no_solid_has_it() -> None:
+    rows = as_exemplar(np.tile(np.random.Generator(np.random.PCG64(2)).random((64, 1)), (1, 64)))
+    (note,) = make(rows, (32, 32, 32), kind="mixed", scales=2).notes
+    assert re.match(
+        r"[1-9][0-9]* of 30 bands are farther from the exemplar's than those of the noise were: ", note
+    )
+    assert make(rows, (32, 32, 32), scales=2).notes == ()
+
+
+@pytest.mark.parametrize("coarse", [0.0, 1.5])
+def test_the_finest_band_of_a_solid_has_more_power_than_that_of_its_slices(coarse: float) -> None:
+    """Why bands of solid and slices cannot both be the exemplar's."""
+    from texlab_core.transforms import laplacian, solid_laplacian
+
+    noise = np.random.Generator(np.random.PCG64(5)).standard_normal((32, 32, 32)).astype(np.float32)
+    volume = noise + coarse * np.roll(noise, 1, 0) + coarse * np.roll(noise, 1, 1) + coarse * np.roll(noise, 1, 2)
+    own = float((finish(solid_laplacian.build(volume, 1))[0] ** 2).mean())
+    for axes in CUTS.values():
+        slices = np.ascontiguousarray(volume.transpose(axes))
+        theirs = np.mean([(laplacian.build(each, 1, "periodic")[0] ** 2).mean() for each in slices])
+        assert own > 1.02 * theirs
 
 
 def test_slices_along_all_axes_are_alike(mixed: dict[str, Result]) -> None:

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 STRIDE = 2**16
 # Units of progress in each stage.
 UNITS = 1000
+# W1 / sd at which bands of solid and slices settle: they cannot all be the exemplar's (see the help page).
+SETTLED = 0.1
 
 
 class Synthesis(Staged):
@@ -181,13 +183,22 @@ class Synthesis(Staged):
     def _notes(self) -> tuple[str, ...]:
         if not self.models:
             return ("The exemplar is constant, and so is the result.",)
-        if self.plan.levels == self.params.scales:
-            return ()
-        height, width = exemplar_of(self.inputs).size
-        return (
-            f"{self.plan.levels} of {self.params.scales} scales fit an exemplar of {width} x {height} pixels and a"
-            f" solid of {size_text(self.size)}.",
-        )
+        notes = []
+        if self.plan.levels != self.params.scales:
+            height, width = exemplar_of(self.inputs).size
+            scales = f"{self.plan.levels} of {self.params.scales} scales"
+            notes.append(
+                f"{scales} fit an exemplar of {width} x {height} pixels and a solid of {size_text(self.size)}."
+            )
+        if self.plan.slices is not None and len(self.distances) > 1:
+            first, last = (self.distances[place].mean(axis=0) for place in (0, -1))
+            farther = int(((last > first) & (last > SETTLED)).sum())
+            if farther:
+                notes.append(
+                    f"{farther} of {last.size} bands are farther from the exemplar's than those of the noise were:"
+                    " what it asks of slices along the three axes does not go together in one solid."
+                )
+        return tuple(notes)
 
     def _preview(self) -> FloatImage:
         middle = self.size[0] // 2
