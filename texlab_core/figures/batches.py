@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 PLAN = "gallery:de-bonet-800"
-SHOWN = 8
+SHOWN = 9
 
 
 def sample() -> NDArray[np.uint8]:
@@ -28,7 +28,7 @@ def sample() -> NDArray[np.uint8]:
         values = variant.params.to_json()
         result = make(variant.method, exemplar, size.of(exemplar.size), seed=seed, **values)
         tiles += [Tile(exemplar.pixels, (choice.name.partition("-")[2],)), Tile(result.image, ())]
-    return page(tiles, 8)
+    return page(tiles, 6)
 
 
-FIGURES = (Figure("batches-de-bonet-800.jpg", "Eight of De Bonet's 800 textures and their exemplars.", sample),)
+FIGURES = (Figure("batches-de-bonet-800.jpg", "Nine of De Bonet's 800 textures and their exemplars.", sample),)
