@@ -42,7 +42,7 @@ def test_what_another_package_writes_is_no_markup(qtbot: Any) -> None:
 
 def test_the_help_window_shows_it(qtbot: Any, stub: Any) -> None:
     window = HelpWindow()
-    qtbot.addWidget(window)
+    qtbot.addWidget(window, before_close_func=HelpWindow.leave)
     window.open_page("stub")
     assert window.browser.page == "stub"
     assert "made from what the method declares" in window.browser.toPlainText()

@@ -15,7 +15,7 @@ from texlab_core.files.resources import resource
 @pytest.fixture
 def window(qtbot):
     made = HelpWindow()
-    qtbot.addWidget(made)
+    qtbot.addWidget(made, before_close_func=HelpWindow.leave)
     return made
 
 
@@ -54,6 +54,7 @@ def test_every_page_shows_with_all_its_figures(window, page, qtbot):
 
 def test_links_lead_to_pages_and_to_knobs(window, qtbot):
     window.open_page("index")
+    qtbot.waitUntil(lambda: window.list.count() > 0)
     window.browser.anchorClicked.emit(QUrl("msg.md"))
     assert window.browser.page == "msg"
     assert window.list.currentItem().data(256) == "msg"

@@ -82,6 +82,7 @@ class HelpDesk(QObject):
     def close(self) -> None:
         """Close the help window."""
         if self.help is not None:
+            self.help.leave()
             self.help.close()
 
     def _show_knob(self, method: str, knob: str) -> None:
