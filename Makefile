@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench soak bar kill calibrate wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench soak bar tuned kill calibrate wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -31,6 +31,10 @@ soak: .venv/.ready-test
 # De Bonet's defaults against what they have to reach; writes the table of the help page.
 bar: .venv/.ready-run
 	@$(PY) -m texlab_core.figures.defaults --write resources/help/de-bonet.md
+
+# Whether what the tuner finds has a larger V at no larger D than the defaults; takes most of an hour.
+tuned: .venv/.ready-run
+	@$(PY) -m texlab_core.figures._tuned
 
 # A batch of 400 jobs killed at 20 random moments, and on a cluster that loses workers: the same files?
 kill: .venv/.ready-test

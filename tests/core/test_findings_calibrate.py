@@ -10,8 +10,12 @@ import pytest
 
 from texlab_core.files.resources import resource
 from texlab_core.findings import calibrate, fitted
+from texlab_core.findings.finding import FINDING
 from texlab_core.findings.limits import RULES, Fit, Rule, Term
+from texlab_core.images.gallery import gallery
 from texlab_core.measures.calibrate import Labelled
+from texlab_core.measures.registry import find_measure
+from texlab_core.measures.subject import Subject
 
 LABELS = Path(__file__).parents[1] / "data/labels"
 
@@ -102,7 +106,38 @@ def test_the_numbers_of_the_program_are_written_by_it() -> None:
     assert rows == table.splitlines()[2 : 2 + len(rows)]
 
 
-def test_the_command_measures_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_alarms_are_counted_on_real_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("stochastic-gravel", "quasiperiodic-brick")
+    monkeypatch.setattr(calibrate, "gallery", lambda: [each for each in gallery() if each.name in names])
+    pairs = list(calibrate.real_pieces())
+    assert len(pairs) == 2
+    for exemplar, piece in pairs:
+        assert exemplar.size == piece.size == (128, 128)
+        assert exemplar.sha256 != piece.sha256
+    values = calibrate.measure_pieces()
+    rule = Rule(name="noise", terms=(Term("specks"),), fit=Fit((1.0,), 0.0), reasons=("noise",))
+    wanted = [find_measure("specks").of(Subject.of_images(*pair)) for pair in pairs]
+    np.testing.assert_array_equal(values["specks"], wanted)
+    between = sum(wanted) / 2
+    assert min(wanted) < between < max(wanted)
+    found = calibrate.with_alarms(rule, Fit((1.0,), between), values)
+    assert (found.pieces, found.alarms) == (2, 1)
+    values["specks"][:] = np.nan
+    assert calibrate.with_alarms(rule, Fit((1.0,), between), values).alarms == 0
+
+
+def test_what_is_certain_and_speaks_of_real_pieces_is_for_what_was_labelled_only() -> None:
+    for rule in RULES:
+        if rule.reasons and rule.certainty == FINDING and rule.fit.alarms > rule.fit.pieces / 10:
+            # Either nearly every result of the methods shows it, or the rule is bound to the labelled parameters.
+            assert rule.fit.positive / rule.fit.cases > 0.95 or rule.when is not None, rule.name
+        assert not rule.reasons or rule.fit.pieces == 56
+
+
+def test_the_command_measures_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(calibrate, "gallery", lambda: gallery()[:1])
     kept = tmp_path / "values.json"
     assert calibrate.main([str(LABELS), "--values", str(kept)]) == 0
     first = capsys.readouterr().out

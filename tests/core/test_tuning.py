@@ -6,6 +6,7 @@ import math
 import threading
 from dataclasses import dataclass, replace
 from functools import partial
+from statistics import NormalDist
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -28,7 +29,8 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.method import DeBonetParams
-from texlab_core.sheets.tuning import FRESH_SEEDS, SEARCH_SEEDS, _rounds, tune
+from texlab_core.sheets.tuning import SEARCH_SEEDS, _rounds, tune
+from texlab_core.sheets.tuning_final import FINAL, SHORT_FINAL, Final, Tried, best_at_the_end, compared, promising
 from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
@@ -178,7 +180,7 @@ def test_every_point_is_told_once_with_its_picture(job: Job) -> None:
     assert job.seed in searched
     assert len(searched) == SEARCH_SEEDS
     assert {each.seed for each in fresh}.isdisjoint(searched)
-    assert len({each.seed for each in fresh}) == FRESH_SEEDS
+    assert len({each.seed for each in fresh}) == found.fresh == SHORT_FINAL.seeds
 
 
 def test_it_stops_when_asked(job: Job) -> None:
@@ -226,6 +228,73 @@ def test_places_of_a_range_and_back() -> None:
     assert (value_at(knobs["x"], -1), value_at(knobs["x"], 2)) == (0.0, 1.0)
 
 
+def test_the_end_takes_no_more_runs_than_it_says(job: Job) -> None:
+    found = tune(job, ("x", "y", "n"), limit=-3.1, budget=300)
+    end = [each for each in found.trials if each.phase == "fresh seeds"]
+    assert found.fresh == FINAL.seeds
+    assert len({each.seed for each in end}) == FINAL.seeds
+    assert len(end) <= FINAL.runs == 15 * 5 + 6 * 11
+    by_params: dict[HillParams, int] = {}
+    for each in end:
+        by_params[each.params] = by_params.get(each.params, 0) + 1
+    # The start and the finalists have all seeds, the others the first ones; what is found is a finalist.
+    assert sorted(by_params.values(), reverse=True)[:6] == [16] * 6
+    assert set(by_params.values()) == {16, 5}
+    assert by_params[found.found] == 16
+    own = [each.kept for each in end if each.params == found.found]
+    assert found.kept == pytest.approx(sum(own) / 16)
+
+
+def tried(x: float, kept: tuple[float, ...], gained: tuple[float, ...]) -> Tried:
+    return Tried(HillParams(x=x), kept, gained)
+
+
+START = tried(0.5, (-4.2, -3.8), (0.30, 0.30))
+
+
+def test_chances_are_of_paired_differences() -> None:
+    # Both are better by .1 in the mean; the first by the same in every seed, the second by chance.
+    steady, scattered = tried(0.1, (-4.3, -3.9), (0.31, 0.31)), tried(0.2, (-3.3, -4.9), (0.31, 0.31))
+    one, two = compared([steady, scattered], START, None)
+    # Differences -.1, -.1 and +.9, -1.1: variances 0 and 2, pooled 1.
+    assert one.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((0 + 1) / 2 / 2)))
+    assert two.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((2 + 1) / 2 / 2)))
+    assert one.gain == pytest.approx(0.01)
+    assert one.larger == two.larger == 1.0
+    assert (one.sure, one.much) == (one.within, pytest.approx(one.within * 0.01))
+    # Against a fixed limit it is not paired: D itself counts.
+    (fixed,) = compared([steady], START, -4.0)
+    assert fixed.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt(2 * 0.04 * 2 / 2 / 2)))
+
+
+def test_what_is_promising_is_likely_or_gains_much() -> None:
+    likely = tried(0.1, (-4.5, -4.1), (0.33, 0.32))
+    much = tried(0.2, (-4.3, -3.7), (0.6, 0.55))
+    hopeless = tried(0.3, (-2.0, -1.5), (0.9, 0.8))
+    worse = tried(0.4, (-4.7, -4.2), (0.1, 0.12))
+    broken = tried(0.6, (math.nan, -4), (0.5, 0.5))
+    found = [START, hopeless, worse, much, likely, broken]
+    assert [each.params.x for each in promising(found, START, None, 1)] == [0.1]
+    assert {each.params.x for each in promising(found, START, None, 9)} == {0.1, 0.2, 0.3, 0.4}
+    assert {each.params.x for each in promising(found, START, -4.0, 2)} == {0.1, 0.2}
+    # A setting with the numbers of another one is no other one.
+    assert len(promising([likely, tried(0.7, likely.kept, likely.gained)], START, None, 9)) == 1
+    assert promising([broken], START, None, 3) == []
+
+
+def test_the_end_suggests_what_is_surest_or_has_most() -> None:
+    start = tried(0.5, (-4.2, -3.8) * 5, (0.30,) * 10)
+    little, lucky = tried(0.1, (-4.3, -3.9) * 5, (0.33,) * 10), tried(0.2, (-5.0, -3.1) * 5, (0.5, 0.4) * 5)
+    assert best_at_the_end([little, lucky], start, None) is little
+    assert best_at_the_end([little, lucky], start, -4.0) is lucky
+    little, lucky = tried(0.1, (-4.3, -3.9), (0.31, 0.31)), tried(0.2, (-5.0, -3.1), (0.5, 0.4))
+    assert best_at_the_end([tried(0.3, (-4.0, -3.7), (0.9, 0.9))], START, None) is START
+    assert best_at_the_end([tried(0.3, (-4.2, -3.8), (0.30, 0.30))], START, None) is START
+    # Nothing reaches the limit: that which is nearest.
+    assert best_at_the_end([little, lucky], START, -9.0) is little
+    assert Final(2, 3, 1, 5).runs == 3 * 3 + 2 * 2
+
+
 def test_ranks() -> None:
     at = [
         Measured(params=HillParams(), kept=k, gained=g)
@@ -264,7 +333,9 @@ def test_thresholds_go_from_alpha_and_side_to_rows_to_cells() -> None:
     start = measure(DeBonetParams())
     tried = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
     phases = [phase for place, (phase, _) in enumerate(tried) if place == 0 or tried[place - 1][0] != phase]
-    assert phases == ["alpha and coarsest side", "patches", "alpha and coarsest side", "rows", "cells"]
+    # Where other conditions made D smaller, patches are looked at again.
+    wanted_phases = ["alpha and coarsest side", "patches", "conditions", "patches"]
+    assert phases == [*wanted_phases, "alpha and coarsest side", "rows", "cells"]
     best = best_of([each for _, each in tried], -3.9, start)
     assert best.params.coarsest_side == 2
     assert not best.params.fit_filters

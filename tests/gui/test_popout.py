@@ -232,6 +232,12 @@ def test_pictures_come_one_after_the_other_with_the_same_pause(qtbot: Any, dialo
     piece = dialog.review.picture.piece
     assert (piece.top(), piece.left(), piece.height()) == (trial.top, trial.left, 24)
     assert dialog.review.picture.picture is made.pictures[1]
+    assert dialog.review.list.hasFocus()
+    # Hundreds of pictures do not stay for the whole session.
+    dialog.show_setup()
+    assert dialog.review.picture.picture is None
+    assert dialog.review.list.count() == 0
+    assert dialog._made is None
 
 
 def test_esc_leaves_and_what_was_answered_stays(qtbot: Any, dialog: Any) -> None:

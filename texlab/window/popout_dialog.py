@@ -307,7 +307,9 @@ class PopoutDialog(QDialog):
         return self.pages.currentWidget() in (self.setup, self.outcome)
 
     def show_setup(self, sentence: str = "") -> None:
-        """Go back to the fields; a sentence says why."""
+        """Go back to the fields, and let the pictures go; a sentence says why."""
+        self._made = None
+        self.review.clear()
         self.pages.setCurrentWidget(self.setup)
         self._edited()
         if sentence:
@@ -335,6 +337,7 @@ class PopoutDialog(QDialog):
         """Show what came of the test."""
         self.review.show_record(record, () if self._made is None else self._made.pictures)
         self.pages.setCurrentWidget(self.outcome)
+        self.review.list.setFocus()
 
     def say(self, sentence: str) -> None:
         """Say a sentence below the scores; while pictures are shown it waits there."""

@@ -114,6 +114,13 @@ class PopoutReview(QWidget):
         layout.addWidget(note)
         layout.addLayout(below, 3)
 
+    def clear(self) -> None:
+        """Let go of record and pictures."""
+        self._record, self._pictures = None, ()
+        self.table.setRowCount(0)
+        self.list.clear()
+        self.picture.set_picture(None)
+
     def show_record(self, record: Record, pictures: Sequence[Picture]) -> None:
         """Show scores, and the pictures that were answered."""
         self._record, self._pictures = record, pictures

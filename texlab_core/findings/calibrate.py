@@ -1,11 +1,13 @@
 """Fit the limits of the findings to labels and judge them: ``python -m texlab_core.findings.calibrate LABELS``.
 
 ``LABELS`` is a folder as for :mod:`texlab_core.measures.calibrate`. Precision and recall are those on textures
-that were left out, one after the other: weights and limit are fitted anew without them each time.
+that were left out, one after the other: weights and limit are fitted anew without them each time. Beside them it
+says of how many real other pieces of the gallery's textures a rule speaks, with which nothing is wrong.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import sys
 from pathlib import Path
@@ -13,22 +15,31 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from texlab_core.engine.inputs import Crop
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.whole import write_whole
 from texlab_core.findings.finding import FINDING
 from texlab_core.findings.limits import RULES, Fit
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.gallery import gallery
 from texlab_core.measures.calibrate import GOOD, measure_labels, read_labels
+from texlab_core.measures.registry import measure_all
+from texlab_core.measures.subject import Subject
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.findings.limits import Rule
     from texlab_core.measures.calibrate import Labelled
 
 Values = dict[str, "NDArray[np.float64]"]
+# Of the labelled exemplars, and what a real piece may share with one at most.
+SIDE = 128
+MOST_SHARED = 0.25
 RIDGE = 1.0
 ROUNDS = 12
 # A limit that fewer labelled results reach rests on chance.
@@ -130,24 +141,56 @@ def fit(rule: Rule, values: Values, labels: Sequence[Labelled]) -> Fit:
     )
 
 
+def real_pieces() -> Iterator[tuple[ImageInput, ImageInput]]:
+    """Return the central part of each texture of the gallery, as labelled, and the part in its upper left corner.
+
+    Textures where the two would share more than a quarter of their area are left out.
+    """
+    for each in gallery():
+        height, width = as_exemplar(f"gallery:{each.name}").size
+        top, left = (height - SIDE) // 2, (width - SIDE) // 2
+        shared = max(0, SIDE - top) * max(0, SIDE - left)
+        if min(top, left) < 0 or shared > MOST_SHARED * SIDE**2:
+            continue
+        parts = (Crop(top=down, left=across, height=SIDE, width=SIDE) for down, across in ((top, left), (0, 0)))
+        exemplar, piece = (as_exemplar(f"gallery:{each.name}", crop=crop) for crop in parts)
+        yield exemplar, piece
+
+
+def measure_pieces() -> Values:
+    """Return the measures of the real pieces as if they were results."""
+    rows = [measure_all(Subject.of_images(exemplar, piece), needed()) for exemplar, piece in real_pieces()]
+    return {name: np.array([row.get(name, np.nan) for row in rows], np.float64) for name in needed()}
+
+
+def with_alarms(rule: Rule, found: Fit, pieces: Values) -> Fit:
+    """Return a fit with how many real pieces there are, and of how many it speaks."""
+    with np.errstate(invalid="ignore"):
+        spoken = scores(rule, found.weights, pieces) >= found.limit
+    return dataclasses.replace(found, pieces=len(spoken), alarms=int(np.count_nonzero(spoken)))
+
+
 def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
-def fit_all(values: Values, labels: Sequence[Labelled], rules: Iterable[Rule] = RULES) -> dict[str, Fit]:
-    """Return the fits of all rules that have labels, by name."""
-    return {rule.name: fit(rule, values, labels) for rule in rules if rule.reasons}
+def fit_all(
+    values: Values, labels: Sequence[Labelled], pieces: Values, rules: Iterable[Rule] = RULES
+) -> dict[str, Fit]:
+    """Return the fits of all rules that have labels, by name, with their alarms."""
+    return {rule.name: with_alarms(rule, fit(rule, values, labels), pieces) for rule in rules if rule.reasons}
 
 
 def table(fits: Mapping[str, Fit]) -> str:
     """Return precision and recall as a table in Markdown, findings first, then what only says "look at"."""
-    from dataclasses import replace
-
-    lines = ["| finding | of methods | labels | precision | recall | says |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| finding | of methods | labels | precision | recall | real pieces | says |",
+        "|---|---|---|---|---|---|---|",
+    ]
     rows = []
     for rule in RULES:
         if rule.name in fits:
-            fresh = replace(rule, fit=fits[rule.name])
+            fresh = dataclasses.replace(rule, fit=fits[rule.name])
             methods = ", ".join(rule.judged) or "all"
             own = fresh.fit
             rows.append(
@@ -155,7 +198,8 @@ def table(fits: Mapping[str, Fit]) -> str:
                     fresh.certainty != FINDING,
                     f"| {rule.name.partition('.')[0].replace('-', ' ')} | {methods} | {own.positive} of "
                     f"{own.cases} |"
-                    f" {own.precision:.2f} | {own.recall:.2f} | {fresh.certainty} |",
+                    f" {own.precision:.2f} | {own.recall:.2f} | {own.alarms} of {own.pieces} |"
+                    f" {fresh.certainty} |",
                 )
             )
     return "\n".join([*lines, *(text for _, text in sorted(rows, key=lambda row: row[0]))]) + "\n"
@@ -168,12 +212,13 @@ def source(fits: Mapping[str, Fit]) -> str:
         "",
         "from __future__ import annotations",
         "",
-        "# By rule: weights, limit, precision, recall, labelled results, how many of them show it.",
-        "NUMBERS: dict[str, tuple[tuple[float, ...], float, float, float, int, int]] = {",
+        "# By rule: weights, limit, precision, recall, labels, of which positive; real pieces, of which alarms.",
+        "NUMBERS: dict[str, tuple[tuple[float, ...], float, float, float, int, int, int, int]] = {",
     ]
     for name, each in fits.items():
         weights = f"({', '.join(map(repr, each.weights))}{',' if len(each.weights) == 1 else ''})"
         rest = f"{each.limit!r}, {each.precision!r}, {each.recall!r}, {each.cases}, {each.positive}"
+        rest += f", {each.pieces}, {each.alarms}"
         lines.append(f'    "{name}": ({weights}, {rest}),')
     return "\n".join([*lines, "}", ""])
 
@@ -208,7 +253,7 @@ def main(arguments: Sequence[str]) -> int:
     try:
         folder = Path(args.labels)
         values = measured(folder, None if args.values is None else Path(args.values))
-        fits = fit_all(values, read_labels(folder))
+        fits = fit_all(values, read_labels(folder), measure_pieces())
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

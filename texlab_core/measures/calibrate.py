@@ -17,8 +17,17 @@ import numpy as np
 
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.measures.discriminability import (
+    SHRINKAGE,
+    joined,
+    looks,
+    magnitude_difference,
+    nearest_blocks,
+    prepared_looks,
+)
 from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.subject import PreparedCache, Subject
+from texlab_core.work.tasks import go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -38,14 +47,25 @@ BY_SCORE = (
     "w1-pixels",
     "w1-bands",
     "dependence-difference",
+    "block-distance-back",
 )
+_ALL = ("heeger-bergen", "de-bonet", "msg", "efros-leung")
 BY_REASON = (
+    ("block-distance-back", "structure-lost", _ALL, 1),
+    ("block-distance-back", "verbatim", ("de-bonet", "efros-leung"), -1),
+    ("block-distance-back", "noise", ("de-bonet",), 1),
     ("cuts", "straight-cuts", ("de-bonet",), 1),
+    ("cuts-at-sides", "straight-cuts", ("de-bonet",), 1),
+    ("palette-distance", "colours-invented", ("heeger-bergen",), 1),
+    ("exemplar-drift", "blotchy", ("heeger-bergen",), 1),
+    ("odd-blocks", "garbage", ("efros-leung",), 1),
     ("w1-pixels", "colours-invented", ("heeger-bergen",), 1),
     ("patches-copied", "verbatim", ("de-bonet", "efros-leung"), 1),
     ("laid-down-share", "repetition", ("de-bonet", "efros-leung"), 1),
     ("visual-difference", "verbatim", ("de-bonet", "efros-leung"), -1),
 )
+# Constants on the diagonal of D's covariance that its own is compared with.
+DIAGONALS = (0.001, 0.003, SHRINKAGE[2], 0.03)
 BY_EXEMPLAR = ("exemplar-drift", "exemplar-unevenness")
 
 
@@ -101,6 +121,26 @@ def measure_labels(
             values[name][place] = value
         tell(place + 1)
     return values
+
+
+def measure_diagonals(folder: Path, labels: Sequence[Labelled]) -> NDArray[np.float64]:
+    """Return D of each labelled result for each of :data:`DIAGONALS`, (constants, n), without its usual scale."""
+    found = np.full((len(DIAGONALS), len(labels)), np.nan)
+    texture, prepared = "", []
+    cache = PreparedCache()
+    for place, label in enumerate(labels):
+        if label.texture != texture:
+            texture = label.texture
+            exemplar = as_exemplar(folder / "gallery" / f"{texture}.exemplar.webp")
+            own = looks(exemplar.pixels, go_on)
+            prepared = [prepared_looks(own, (*SHRINKAGE[:2], each), 1.0) for each in DIAGONALS]
+        image = as_exemplar(folder / "gallery" / f"{texture}.{label.variant}.webp").pixels
+        m = magnitude_difference(Subject(image=image, exemplar=exemplar, cache=cache))
+        blocks = looks(image, go_on).blocks
+        for row, each in enumerate(prepared):
+            if m is not None:
+                found[row, place] = joined(m, float(nearest_blocks(blocks, each).mean()))
+    return found
 
 
 def auc(values: NDArray[np.float64], positive: NDArray[np.bool_]) -> float:
@@ -167,12 +207,23 @@ def table(folder: Path, tell: Callable[[int], None] = lambda _: None) -> str:
         numbers = auc(-values[name], good), within_textures(values[name], good, textures)
         right = accuracy_left_out(values[name], good, textures)
         lines.append(f"| {_title(name)} | {numbers[0]:.3f} | {numbers[1]:.3f} | {right:.0%} |")
+    lines += [
+        "",
+        "| D with this on the diagonal | AUC | within one texture | one cut, right |",
+        "|---|---|---|---|",
+    ]
+    for constant, found in zip(DIAGONALS, measure_diagonals(folder, labels), strict=True):
+        numbers = auc(-found, good), within_textures(found, good, textures)
+        right = accuracy_left_out(found, good, textures)
+        used = " (used)" if constant == SHRINKAGE[2] else ""
+        lines.append(f"| {constant:g}{used} | {numbers[0]:.3f} | {numbers[1]:.3f} | {right:.0%} |")
     lines += ["", "| measure | tells | of methods | AUC |", "|---|---|---|---|"]
     for name, reason, chosen, sign in BY_REASON:
         within = np.array([each.method in chosen for each in labels])
         hits = np.array([reason in each.reasons for each in labels])
-        found = auc(sign * values[name][within], hits[within])
-        lines.append(f"| {_title(name)} | {reason.replace('-', ' ')} | {', '.join(chosen)} | {found:.2f} |")
+        told = auc(sign * values[name][within], hits[within])
+        of = "all" if chosen == _ALL else ", ".join(chosen)
+        lines.append(f"| {_title(name)} | {reason.replace('-', ' ')} | {of} | {told:.2f} |")
     return "\n".join([*lines, "", *_exemplars(folder, textures)]) + "\n"
 
 

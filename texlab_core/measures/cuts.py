@@ -146,6 +146,11 @@ def _cuts(subject: Subject) -> float | None:
     return None if found is None else found.value
 
 
+def _cuts_at_sides(subject: Subject) -> float | None:
+    found = largest_cut_between(subject)
+    return None if found is None else found.value
+
+
 register(
     Measure(
         id="cuts",
@@ -177,5 +182,21 @@ register(
         part_of="cuts",
         live=True,
         order=41,
+    )
+)
+register(
+    Measure(
+        id="cuts-at-sides",
+        title="cuts at sides",
+        summary="The same as cuts, but only for the lines where blocks as large as the exemplar would meet: more "
+        "certain about repetitions of the exemplar, blind to all other places.",
+        low=-1e6,
+        high=1e6,
+        better="lower",
+        needs=("exemplar",),
+        function=_cuts_at_sides,
+        form=".1f",
+        part_of="cuts",
+        order=53,
     )
 )

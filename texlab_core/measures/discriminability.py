@@ -89,12 +89,29 @@ def looks(image: FloatImage, look: Callable[[], None]) -> Looks:
 
 def prepare(pixels: FloatImage, look: Callable[[], None]) -> PreparedLooks:
     """Describe an exemplar, and how its blocks scatter."""
-    found = looks(pixels, look)
-    covariance = np.cov(found.blocks, rowvar=False)
-    whole, diagonal, constant = SHRINKAGE
-    steady = whole * covariance + np.diag(diagonal * np.diag(covariance) + constant)
-    whitening = np.linalg.inv(np.linalg.cholesky(steady)).T * (SCALE / math.sqrt(len(steady)))
+    return prepared_looks(looks(pixels, look))
+
+
+def prepared_looks(
+    found: Looks, shrinkage: tuple[float, float, float] = SHRINKAGE, scale: float = SCALE
+) -> PreparedLooks:
+    """Return an exemplar's looks with its blocks whitened, by these constants of the covariance."""
+    whitening = whitening_of(found.blocks, shrinkage) * scale
     return PreparedLooks(found.lags, found.blocks @ whitening, whitening)
+
+
+def whitening_of(
+    blocks: NDArray[np.float64], shrinkage: tuple[float, float, float] = SHRINKAGE
+) -> NDArray[np.float64]:
+    """Return the matrix (n, n) that blocks (m, n) are multiplied by, so that distances are their Mahalanobis's.
+
+    They are divided by the square root of n. Of the covariance C, ``shrinkage`` takes so much of C, so much of its
+    diagonal, and a constant on the diagonal.
+    """
+    covariance = np.cov(blocks, rowvar=False)
+    whole, diagonal, constant = shrinkage
+    steady = whole * covariance + np.diag(diagonal * np.diag(covariance) + constant)
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(steady)).T / math.sqrt(len(steady)))
 
 
 def block_starts(size: tuple[int, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -189,9 +206,14 @@ def distances(subject: Subject, picture: Looks, exemplar: PreparedLooks) -> NDAr
 
 
 def discriminability(subject: Subject) -> float | None:
-    """Return D = ln(m + 0.001) + 2 ln(b + 0.05)."""
+    """Return D of m and b, as in :func:`joined`."""
     m, b = magnitude_difference(subject), block_distance(subject)
-    return None if m is None or b is None else math.log(m + 0.001) + 2 * math.log(b + 0.05)
+    return None if m is None or b is None else joined(m, b)
+
+
+def joined(m: float, b: float) -> float:
+    """Return D = ln(m + 0.001) + 2 ln(b + 0.05)."""
+    return math.log(m + 0.001) + 2 * math.log(b + 0.05)
 
 
 register(

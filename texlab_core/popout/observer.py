@@ -6,12 +6,11 @@ exemplar: it compares every window of the piece's size with the rest of the same
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.measures.discriminability import BLOCK, BORDER, LAGS, SHRINKAGE, block_starts, looks
+from texlab_core.measures.discriminability import BLOCK, BORDER, LAGS, block_starts, looks, whitening_of
 from texlab_core.transforms.luma import luma
 from texlab_core.transforms.octave_bands import oriented_bands
 from texlab_core.work.tasks import go_on
@@ -87,10 +86,7 @@ def _block_distances(
 
     blocks = looks(image, look).blocks
     starts = block_starts(image.shape[:2])
-    covariance = np.cov(blocks, rowvar=False)
-    whole, diagonal, constant = SHRINKAGE
-    steady = whole * covariance + np.diag(diagonal * np.diag(covariance) + constant)
-    points = blocks @ np.linalg.inv(np.linalg.cholesky(steady)).T / math.sqrt(len(steady))
+    points = blocks @ whitening_of(blocks)
     look()
     distances = cdist(points, points, "sqeuclidean").astype(np.float32)
     look()

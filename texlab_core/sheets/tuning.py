@@ -22,6 +22,7 @@ from texlab_core.errors import InputError, ParamError
 from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.subject import PreparedCache
 from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
+from texlab_core.sheets.tuning_final import FINAL, FINAL_FROM, SHORT_FINAL, Tried, best_at_the_end, promising
 from texlab_core.sheets.tuning_search import Measured, knob_rounds
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
     from texlab_core.sheets.sweep_running import Elsewhere, Places
+    from texlab_core.sheets.tuning_final import Final
     from texlab_core.sheets.tuning_search import Rounds
 
 KEPT = "discriminability"
@@ -42,9 +44,6 @@ DEFAULT_BUDGET = 480
 MAX_BUDGET = 5000
 # Every setting is tried with this many seeds, the job's own first: D scatters by .15 from seed to seed.
 SEARCH_SEEDS = 2
-# Seeds that the search never saw, and how far below the limit candidates for them are looked for.
-FRESH_SEEDS = 3
-MARGINS = (0.0, 0.1, 0.2, 0.4)
 
 Limit = float | Literal["start"]
 
@@ -89,6 +88,8 @@ class Tuning:
         The suggested parameters; those of ``base`` where nothing better holds on seeds that the search never saw.
     kept, gained
         Means of D and V of ``found`` over those seeds, and the same of ``base``.
+    fresh
+        Number of those seeds.
     """
 
     base: Job
@@ -100,6 +101,7 @@ class Tuning:
     base_kept: float
     base_gained: float
     budget: int
+    fresh: int
     knobs: tuple[str, ...] = ()
 
     @property
@@ -124,7 +126,7 @@ class Tuning:
         held = "" if self.kept <= self.limit else f" No setting reached {kept.text(self.limit)}."
         return (
             f"{gained.title} {gained.text(self.gained)} instead of {gained.text(self.base_gained)}, {kept.title}"
-            f" {kept.text(self.kept)} instead of {kept.text(self.base_kept)}: means over {FRESH_SEEDS} seeds that"
+            f" {kept.text(self.kept)} instead of {kept.text(self.base_kept)}: means over {self.fresh} seeds that"
             f" the search never saw, after {runs}.{held}"
         )
 
@@ -203,6 +205,7 @@ class _Search:
     trials: list[Trial] = field(default_factory=list)
     known: dict[tuple[Params, int], Trial] = field(default_factory=dict)
     found: list[Measured] = field(default_factory=list)
+    seeds: tuple[int, ...] = ()
 
     def try_all(self, phase: str, asked: Sequence[tuple[Params, int]], reserve: int) -> None:
         """Run what was not run before, as far as the budget reaches."""
@@ -239,6 +242,15 @@ class _Search:
                 found.append(Measured(params=each, kept=kept, gained=gained))
         self.found += found
         return found
+
+    def tried(self, params: Params, seeds: Sequence[int]) -> Tried:
+        """Return what is known of parameters with several seeds; NaN where the budget did not reach."""
+        known = [self.known.get((params, seed)) for seed in seeds]
+        return Tried(
+            params,
+            tuple(math.nan if each is None else each.kept for each in known),
+            tuple(math.nan if each is None else each.gained for each in known),
+        )
 
     def _keep(self, trial: Trial) -> None:
         self.trials.append(trial)
@@ -345,10 +357,12 @@ def tune(
     else:
         run = partial(run_sweep_elsewhere, should_stop=should_stop, elsewhere=elsewhere, ids=(KEPT, GAINED))
     search = _Search(base, budget, on_trial, on_progress, run)
+    final = FINAL if budget >= FINAL_FROM else SHORT_FINAL
     # Checked before anything runs.
     rounds = _rounds(base, knobs, cache, should_stop)
     seeds = _seeds(base)
-    start = search.means("start", [base.params], seeds[:SEARCH_SEEDS], 0)[0]
+    search.seeds = tuple(seeds[:SEARCH_SEEDS])
+    start = search.means("start", [base.params], search.seeds, 0)[0]
     if not start.usable:
         title = find_measure(KEPT).title
         why = (
@@ -356,23 +370,23 @@ def tune(
         )
         raise InputError(f"What tuning begins with cannot be used: {why}")
     allowed = start.kept if limit == "start" else float(limit)
-    reserve = FRESH_SEEDS * (len(MARGINS) + 1)
     asked = rounds(start, allowed)
     try:
         phase, params = next(asked)
-        while len(search.trials) < budget - reserve:
-            answer = search.means(phase, params, seeds[:SEARCH_SEEDS], reserve)
+        while len(search.trials) < budget - final.runs:
+            answer = search.means(phase, params, search.seeds, final.runs)
             phase, params = asked.send(answer)
     except StopIteration:
         pass
     finally:
         asked.close()
-    return _decide(search, start, limit, allowed, seeds[SEARCH_SEEDS:], tuple(knobs))
+    return _decide(search, base.params, limit, seeds[SEARCH_SEEDS:], final, tuple(knobs))
 
 
 def _seeds(base: Job) -> list[int]:
     """Return the seeds of the search, the job's own first, then the fresh ones; all differ."""
-    drawn = Streams(base.seed)("tuning seeds").choice(MAX_SEED - 1, SEARCH_SEEDS - 1 + FRESH_SEEDS, replace=False)
+    count = SEARCH_SEEDS - 1 + FINAL.seeds
+    drawn = Streams(base.seed)("tuning seeds").choice(MAX_SEED - 1, count, replace=False)
     # Those from the job's own on are moved up by one.
     return [base.seed, *(int(each) + (each >= base.seed) for each in drawn)]
 
@@ -410,31 +424,34 @@ def _rounds(
 
 
 def _decide(
-    search: _Search, start: Measured, limit: Limit, allowed: float, seeds: list[int], knobs: tuple[str, ...]
+    search: _Search,
+    start: Params,
+    limit: Limit,
+    seeds: list[int],
+    final: Final,
+    knobs: tuple[str, ...],
 ) -> Tuning:
-    """Measure the best ones and the start again, on seeds that the search never saw, and choose."""
-    base = search.base
-    own = [each for each in search.found if each.usable]
-    chosen: list[Params] = [start.params]
-    for margin in MARGINS:
-        best = max(own, key=lambda each: each.rank(allowed - margin))
-        if best.params not in chosen:
-            chosen.append(best.params)
-    means = search.means("fresh seeds", chosen, seeds, 0)
-    if limit == "start":
-        allowed = means[0].kept
-    best_mean = max(means, key=lambda each: each.rank(allowed))
+    """Measure the most promising ones and the start again, on seeds that the search never saw, and choose."""
+    bound = None if limit == "start" else float(limit)
+    own = [search.tried(each.params, search.seeds) for each in search.found]
+    chosen = promising(own, search.tried(start, search.seeds), bound, final.candidates)
+    for count, most in ((final.first, final.finalists), (final.seeds, final.finalists)):
+        search.means("fresh seeds", [start, *(each.params for each in chosen)], seeds[:count], 0)
+        base = search.tried(start, seeds[:count])
+        chosen = promising([search.tried(each.params, seeds[:count]) for each in chosen], base, bound, most)
+    best = best_at_the_end(chosen, base, bound)
     if search.on_progress is not None:
         search.on_progress(1.0)
     return Tuning(
-        base=base,
-        limit=allowed,
+        base=search.base,
+        limit=base.means.kept if bound is None else bound,
         trials=tuple(search.trials),
-        found=best_mean.params,
-        kept=best_mean.kept,
-        gained=best_mean.gained,
-        base_kept=means[0].kept,
-        base_gained=means[0].gained,
+        found=best.params,
+        kept=best.means.kept,
+        gained=best.means.gained,
+        base_kept=base.means.kept,
+        base_gained=base.means.gained,
         budget=search.budget,
+        fresh=final.seeds,
         knobs=knobs,
     )

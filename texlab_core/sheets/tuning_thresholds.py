@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from texlab_core.sheets.tuning_search import best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 
     from texlab_core.engine.params import Params
     from texlab_core.engine.streams import Streams
@@ -20,9 +20,33 @@ SIDES = (1, 2, 4, 8, 16)
 # What rows, and cells, are multiplied by.
 ROW_FACTORS = (0.5, 0.7, 1.4, 2.0)
 CELL_FACTORS = (0.25, 4.0)
-# Widths of the patches of the coarsest level, and alphas that go with them.
-PATCHES = (0.2, 0.25, 0.3, 0.35, 0.4)
-PATCH_ALPHAS = (0.05, 0.1, 0.2)
+# With patches the coarsest side matters less: a thinner grid.
+FEW_ALPHAS = (0.05, 0.15, 0.3)
+# Widths of the patches of the coarsest level, from how many places each is drawn, and alphas that go with them.
+PATCHES = (0.25, 0.3, 0.36, 0.39, 0.42, 0.48)
+PLACES = (1, 3, 8)
+PATCH_ALPHAS = (0.05, 0.15)
+# What may make the conditions fit this exemplar better, whatever the layout is.
+CONDITIONS: tuple[Mapping[str, Any], ...] = (
+    {"beta": 0.5},
+    {"beta": 1.0},
+    {"border": "smooth"},
+    {"border": "periodic"},
+    {"channels": "scaled"},
+    {"channels": "principal"},
+    {"orientations": 2},
+    {"orientations": 8},
+    {"filters": "first"},
+    {"filters": "second"},
+    {"pyramid": "steerable"},
+)
+# Where some conditions make D smaller by this much, smaller patches may turn that into a larger V.
+GAINED_D = 0.05
+TRADED_PATCHES = (0.36, 0.39, 0.42)
+# Alphas are multiplied by these as well.
+ALPHA_FACTORS = (0.5, 1.7, 2.7)
+# Where the coarsest level comes from: with the same ones and the same seed results differ in few places only.
+LAYOUT = ("coarsest", "coarsest_side", "fit_filters", "patch", "places", "fitting")
 # Alphas between two of the grid.
 HALVINGS = 2
 # Rows are gone through again while this helps.
@@ -32,7 +56,7 @@ ROW_TURNS = 2
 def threshold_rounds(
     start: Measured, shape_of: Callable[[Params], tuple[int, tuple[str, ...]]], limit: float, streams: Streams
 ) -> Rounds:
-    """Look at alpha with the coarsest side, then with the patches; halve alpha's steps; vary rows, then cells.
+    """Look at alpha with the coarsest side, at patches, conditions and finer alphas; vary rows, then cells.
 
     Parameters
     ----------
@@ -47,27 +71,49 @@ def threshold_rounds(
     """
     first = cast("DeBonetParams", start.params)
     phase = "alpha and coarsest side"
-    best = start
-    grid = [_sided(first, side).replace(alpha=alpha) for side in SIDES for alpha in ALPHAS]
-    best = best_of((yield phase, list(grid)), limit, best)
-    if first.coarsest == "patches":
+    patched = first.coarsest == "patches"
+    alphas: Sequence[float] = FEW_ALPHAS if patched else ALPHAS
+    grid = [_sided(first, side).replace(alpha=alpha) for side in SIDES for alpha in alphas]
+    known = [start, *(yield phase, list(grid))]
+    best = best_of(known, limit, start)
+    if patched:
         found = cast("DeBonetParams", best.params)
         sided = [first] if found.coarsest_side == first.coarsest_side else [first, found]
-        alphas = sorted({*PATCH_ALPHAS, found.alpha})
-        patches = [each.replace(patch=width, alpha=a) for each in sided for width in PATCHES for a in alphas]
-        best = best_of((yield "patches", list(patches)), limit, best)
+        alphas = tuple(sorted({*PATCH_ALPHAS, found.alpha}))
+        patches = [
+            each.replace(patch=width, places=places, alpha=a)
+            for each in sided
+            for width in PATCHES
+            for places in PLACES
+            for a in (alphas if each is sided[0] else PATCH_ALPHAS[:1])
+        ]
+        known += yield "patches", list(patches)
+        best = best_of(known, limit, best)
+    # Two seeds say little of another layout, and much of other conditions on the same one.
+    own = best_of([each for each in known if _layout(each.params) == _layout(first)], limit, start)
+    leaders = list(dict.fromkeys([start.params, own.params, best.params]))
+    conditions = [each for leader in leaders for each in _conditions(cast("DeBonetParams", leader))]
+    found_there = yield "conditions", list(conditions)
+    known += found_there
+    nearest = min((each for each in found_there if each.usable), key=lambda each: each.kept, default=start)
+    if patched and nearest.kept < start.kept - GAINED_D:
+        strict = cast("DeBonetParams", nearest.params)
+        traded = [strict.replace(patch=width, places=places) for width in TRADED_PATCHES for places in PLACES]
+        known += yield "patches", list(traded)
+    own = best_of([each for each in known if _layout(each.params) == _layout(first)], limit, own)
+    best = best_of(known, limit, best)
     step = ALPHAS[1] - ALPHAS[0]
     for _ in range(HALVINGS):
         step /= 2
         here = cast("DeBonetParams", best.params)
         alphas = [float(f"{max(0.0, here.alpha + side * step):.6g}") for side in (-1, 1)]
         best = best_of((yield phase, [here.replace(alpha=each) for each in alphas]), limit, best)
+    if own is not best:
+        own = yield from _by_rows(own, shape_of, limit)
+        best = best_of([own], limit, best)
     for _ in range(ROW_TURNS):
         before = best
-        depth, names = shape_of(best.params)
-        for k in range(1, depth + 1):
-            row = [(k, name) for name in names]
-            best = best_of((yield "rows", _scaled(best, row, ROW_FACTORS, depth, names)), limit, best)
+        best = yield from _by_rows(best, shape_of, limit)
         if best is before:
             break
     turn = 0
@@ -81,6 +127,28 @@ def threshold_rounds(
         turn += 1
         if best is before:
             return
+
+
+def _layout(params: Params) -> tuple[object, ...]:
+    return tuple(getattr(params, name) for name in LAYOUT)
+
+
+def _conditions(params: DeBonetParams) -> list[DeBonetParams]:
+    """Return the parameters with other conditions, one at a time."""
+    alphas = [float(f"{min(params.alpha * factor, ALPHAS[-1]):.3g}") for factor in ALPHA_FACTORS]
+    changed = [params.replace(**changes) for changes in CONDITIONS]
+    return [each for each in (*changed, *(params.replace(alpha=a) for a in alphas)) if each != params]
+
+
+def _by_rows(
+    best: Measured, shape_of: Callable[[Params], tuple[int, tuple[str, ...]]], limit: float
+) -> Generator[tuple[str, list[Params]], Sequence[Measured], Measured]:
+    """Multiply row after row of the threshold table, and return the best."""
+    depth, names = shape_of(best.params)
+    for k in range(1, depth + 1):
+        row = [(k, name) for name in names]
+        best = best_of((yield "rows", _scaled(best, row, ROW_FACTORS, depth, names)), limit, best)
+    return best
 
 
 def _sided(params: DeBonetParams, side: int) -> DeBonetParams:
