@@ -17,6 +17,10 @@ test: .venv/.ready-test
 lint: .venv/.ready-test
 	@$(PY) .ci/check.py lint
 
+# Every package of the two, and what it imports.
+rooms: .venv/.ready-test
+	@$(PY) .ci/rooms.py
+
 fmt: .venv/.ready-test
 	@$(PY) -m ruff check --fix .
 	@$(PY) -m ruff format .

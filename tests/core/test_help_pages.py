@@ -21,6 +21,10 @@ PAGES = {
     for entry in resource("help").iterdir()
     if entry.name.endswith(".md")
 }
+OURS = {
+    "heeger-bergen", "solid", "mixture", "de-bonet", "efros-leung", "msg",
+    "uncoded", "car", "ac-h", "tiling", "pixels", "bands",
+}  # fmt: skip
 FIGURES = {entry.name: entry for entry in resource("help/figures").iterdir()}
 LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
 page_named = pytest.mark.parametrize("page", sorted(PAGES))
@@ -67,8 +71,15 @@ def test_a_page_starts_with_its_title_and_has_only_one(page):
     assert others
 
 
-@pytest.mark.parametrize("method", methods().values(), ids=lambda method: method.id)
-def test_every_method_has_a_page_that_names_all_its_knobs(method):
+def test_these_methods_have_a_page_of_their_own():
+    # One that is new has a page that is made from its declarations, until one is written.
+    assert methods().keys() & PAGES.keys() >= OURS
+
+
+@pytest.mark.parametrize(
+    "method", [each for each in methods().values() if each.id in PAGES], ids=lambda each: each.id
+)
+def test_the_page_of_a_method_names_all_its_knobs(method):
     linked = {target[5:] for target in links(method.id) if target.startswith("knob:")}
     assert {f"{method.id}/{each.name}" for each in describe(method.params)} <= linked
     surname = re.search(r"[A-Z][a-z]{3,}", method.reference)[0]

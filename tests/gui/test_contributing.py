@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, feed
 
+import texlab.docks
 import texlab_core.measures
 import texlab_core.methods
 from tests.core.toy import stock
-from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock, shown_image
+from texlab.docks import dock_classes
 from texlab.state.intentions import Pin
 from texlab.state.scene import Scene
-from texlab.widgets.plain import Label
 from texlab_core.contract.checking import check_method
 from texlab_core.engine import registry
 from texlab_core.measures import registry as measures_registry
@@ -75,17 +74,10 @@ def test_the_measure_is_asked_like_any_other(module: Any) -> None:
     assert measures_registry.measure_all(Subject.of_images(flat, half), ["contrast-left"]) == {}
 
 
-def test_the_dock_shows_and_sends_what_it_says(qtbot: Any) -> None:
-    from PySide6.QtWidgets import QVBoxLayout
-
-    from texlab.docks.recent import Same
-
-    names = {
-        "FramedDock": FramedDock, "Label": Label, "QVBoxLayout": QVBoxLayout, "Pin": Pin,
-        "Question": Question, "Same": Same, "shown_image": shown_image,
-    }  # fmt: skip
-    exec(example("Add a dock"), names)
-    dock = names["ExtremesDock"]()  # type: ignore[operator]
+def test_the_dock_shows_and_sends_what_it_says(qtbot: Any, module: Any) -> None:
+    module(texlab.docks, "extremes", example("Add a dock"))
+    (made,) = (each for each in dock_classes() if each.name == "extremes")
+    dock: Any = made()
     qtbot.addWidget(dock)
     column = column_of(np.linspace(0.25, 0.75, 12, dtype=np.float32).reshape(3, 4, 1))
     feed(dock, Scene(None, (column,), column.id))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,6 +14,7 @@ from texlab.state.session import Column, Sample, Session, State
 from texlab.state.sweeps import NO_SWEEP, SweepPlan
 from texlab_core.engine.inputs import Crop
 from texlab_core.sheets.sweep import Vary
+from texlab_core.warming import Need
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -112,6 +114,18 @@ def test_a_sweep_that_cannot_be_run_is_said_and_leaves_what_runs(qtbot: Any, con
     controller.run_sweep(1, plan)
     assert (controller.scene().sweep.problem, controller.scene().sweep.number) == ("", 2)
     qtbot.waitUntil(lambda: controller.scene().sweep.status == "finished")
+
+
+def test_cells_wait_until_their_method_is_loaded(
+    qtbot: Any, controller: Controller, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+    warmth = SimpleNamespace(wait=lambda need, should_stop: asked.append(need))
+    monkeypatch.setattr(controller._sweeps, "_warmth", warmth)
+    controller.run_sweep(1, SweepPlan((Vary("level", (0.0, 1.0)),), 16))
+    wait(qtbot, controller)
+    qtbot.waitUntil(lambda: controller.scene().sweep.status == "finished")
+    assert asked == [Need("stub", controller.exemplar.channels)]
 
 
 def test_a_sweep_is_stopped_with_what_it_has(qtbot: Any, controller: Controller) -> None:
