@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 LEFT_BUTTON = 1
 EVENTS = 120
 FRAME_S = 1 / 60
+ROUNDS = 3
+WANTED_MS = 40
 
 
 class Pointer:
@@ -106,8 +108,19 @@ def open_window(columns: int, *, solid: bool = False) -> Any:
     return explorer
 
 
-def drag(pointer: Pointer, explorer: Any, start: QPoint, places: list[QPoint], title: str) -> None:
-    """Drag over places, first waiting for every answer, then 60 events a second."""
+def drag(
+    pointer: Pointer, explorer: Any, start: QPoint, places: list[QPoint], title: str
+) -> tuple[list[float], list[float], int]:
+    """Drag over places, first waiting for every answer, then 60 events a second.
+
+    Returns
+    -------
+    waited, answered
+        Seconds from each event to the pane that was repainted with its parameters, or with newer ones: one event
+        at a time, and 60 a second.
+    repaints
+        How often the pane was repainted during the latter.
+    """
     column_id = explorer.session.state.columns[0].id
     watch = Watch(explorer, column_id)
     params = lambda: explorer.session.state.column(column_id).params  # noqa: E731
@@ -145,16 +158,50 @@ def drag(pointer: Pointer, explorer: Any, start: QPoint, places: list[QPoint], t
         for place, (began, _) in enumerate(sent)
     ]
     print(f"{title}, 60 events a second: {quantiles(answered)}, {len(watch.painted)} repaints")
+    return waited, answered, len(watch.painted)
 
 
-def slider(pointer: Pointer, explorer: Any) -> None:
+def slider(pointer: Pointer, explorer: Any, title: str = "slider") -> tuple[list[float], list[float], int]:
+    """Drag the slider of alpha left and right."""
     handle = explorer.window.parameters.form.knobs["alpha"].slider
     explorer.window.parameters.scroll_area.ensureWidgetVisible(handle)
     pause(0.2)
     start = _handle(handle)
     steps = np.tile(np.r_[1:9, 7:-9:-1, -7:1], 10)[:EVENTS]
     places = [handle.mapToGlobal(start + QPoint(int(step), 0)) for step in steps]
-    drag(pointer, explorer, handle.mapToGlobal(start), places, "slider")
+    return drag(pointer, explorer, handle.mapToGlobal(start), places, title)
+
+
+def measures(pointer: Pointer, explorer: Any) -> None:
+    """Drag the slider with and without the numbers about what is shown, in turn; prints both and their ratios."""
+    from texlab.runs.column_run import Measured, MeasureRun
+
+    def nothing(run: MeasureRun, task: Any) -> Measured:
+        return Measured({}, run.image.shape[:2])
+
+    measure = MeasureRun.__call__
+    found: dict[str, list[tuple[list[float], list[float], int]]] = {"with": [], "without": []}
+    for _ in range(ROUNDS):
+        for how, run in (("with", measure), ("without", nothing)):
+            MeasureRun.__call__ = run  # type: ignore[method-assign]
+            found[how].append(slider(pointer, explorer, f"slider, {how} measures"))
+            wait(lambda: explorer.idle)
+            column = explorer.controller.column_scene(explorer.session.state.columns[0].id)
+            assert bool(column.measures) == (how == "with"), "the numbers are not those that were asked for"
+    MeasureRun.__call__ = measure  # type: ignore[method-assign]
+    for place, title in enumerate(("one event at a time", "60 events a second")):
+        p50, p95 = (
+            {how: 1000 * np.quantile(np.concatenate([each[place] for each in rounds]), share)
+             for how, rounds in found.items()}
+            for share in (0.5, 0.95)
+        )  # fmt: skip
+        print(
+            f"{title}: with measures median {p50['with']:.1f} ms, p95 {p95['with']:.1f} (wanted: {WANTED_MS}), "
+            f"without {p50['without']:.1f}, {p95['without']:.1f}; ratios {p50['with'] / p50['without']:.2f}, "
+            f"{p95['with'] / p95['without']:.2f}"
+        )
+    repaints = {how: sum(each[2] for each in rounds) for how, rounds in found.items()}
+    print(f"repaints: {repaints['with']} with, {repaints['without']} without measures")
 
 
 def cell(pointer: Pointer, explorer: Any) -> None:
@@ -282,7 +329,8 @@ def main(what: str, columns: int) -> None:
     explorer = open_window(columns, solid=what == "turn")
     pointer = Pointer()
     try:
-        {"slider": slider, "cell": cell, "explain": explain, "turn": turn}[what](pointer, explorer)
+        tried = {"slider": slider, "cell": cell, "explain": explain, "turn": turn, "measures": measures}
+        tried[what](pointer, explorer)
     finally:
         explorer.window.close()
         explorer.window.deleteLater()

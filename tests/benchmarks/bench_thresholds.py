@@ -43,7 +43,7 @@ def display() -> Iterator[str]:
     server.wait()
 
 
-TRIED = [*((what, count) for what in ("slider", "cell", "explain") for count in (1, 4)), ("turn", 1)]
+TRIED = [*((what, count) for what in ("slider", "cell", "explain", "measures") for count in (1, 4)), ("turn", 1)]
 
 
 @pytest.mark.parametrize(("what", "columns"), TRIED)

@@ -46,6 +46,8 @@ def runner(qapp: Any) -> Any:
     made = ColumnRunner(COLUMN, Shared(Slots(1), AnalysisCache(), Warmth()))
     made.worker.close()
     made.worker = Idle()  # type: ignore[assignment]
+    made.measurer.close()
+    made.measurer = Idle()  # type: ignore[assignment]
     return made
 
 
@@ -111,13 +113,13 @@ def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
     start(runner)
     first, second = finished((96, 128), 0.01), finished((96, 128), 0.02, draft=True)
     runner._finished(first)
-    runner._finished(Measured({"d": 1.0}, (96, 128)))
+    runner._measures_came(Measured({"d": 1.0}, (96, 128)))
     start(runner, draft=True)
     runner._finished(second)
     # The newer picture is shown with the numbers of the one before, until it has its own.
     assert (runner.scene.result, dict(runner.scene.measures)) == (second.result, {"d": 1.0})
     assert len(runner._shared.points.points) == 1
-    runner._finished(Measured({"d": 2.0}, (96, 128)))
+    runner._measures_came(Measured({"d": 2.0}, (96, 128)))
     points = runner._shared.points.points
     assert [each.cell.measures for each in points] == [{"d": 1.0}, {"d": 2.0}]
     assert [each.cell.job.key for each in points] == [each.result.job.key for each in (first, second)]
@@ -165,7 +167,7 @@ def test_a_picture_that_cannot_be_measured_stays(runner: Any, caplog: pytest.Log
     end = finished((96, 128), 0.01)
     runner._finished(end)
     assert runner.measuring
-    runner._failed("There is not enough memory for this size.")
+    runner._measuring_failed("There is not enough memory for this size.")
     assert (runner.scene.status, runner.scene.result, runner.measuring) == ("finished", end.result, False)
     assert runner.scene.unexamined == BROKEN
     assert "could not be measured: There is not enough memory" in caplog.text

@@ -1,11 +1,16 @@
-"""Numbers that follow the slider: after the picture, stopped for the next one, said with the draft's own size."""
+"""Numbers that follow the slider: beside the pictures, which never wait, said with the draft's own size."""
+
+import threading
+import time
 
 import numpy as np
 import pytest
 
 from tests.stub_method import StubParams, stub  # noqa: F401
+from texlab.runs.column_run import Measured, MeasureRun
 from texlab.runs.controller import Controller
 from texlab.state.session import Column, Sample, Session, State
+from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.registry import measure_all
 from texlab_core.measures.subject import Subject
@@ -50,17 +55,50 @@ def test_a_new_run_takes_the_old_numbers_away(qtbot, bench):
     assert controller.column_scene(1).measures
 
 
-def test_measuring_is_stopped_for_the_next_picture_unless_its_numbers_are_old(qtbot, bench):
+def test_no_picture_waits_for_numbers_and_old_ones_are_renewed(qtbot, bench, monkeypatch):
+    """Measuring that takes for ever: a drag goes on beside it, and its numbers are about what was measured."""
     _, controller = bench
     qtbot.waitUntil(lambda: bool(controller.column_scene(1).measures), timeout=PATIENCE_MS)
     qtbot.waitUntil(lambda: not controller.measuring, timeout=PATIENCE_MS)
     runner = controller._runners[1]
-    runner._measuring = True
-    assert runner._hurries
-    runner._measured_s -= 1.0
-    assert not runner._hurries
-    runner._measuring = False
-    assert not runner._hurries
+    begun, may_end = threading.Semaphore(0), threading.Semaphore(0)
+
+    def slow(run, task):
+        begun.release()
+        while not may_end.acquire(timeout=0.001):
+            if task.should_stop():
+                raise Cancelled
+        return Measured({"contrast": float(run.result.job.params.level)}, run.image.shape[:2])
+
+    monkeypatch.setattr(MeasureRun, "__call__", slow)
+
+    def drag(level):
+        # As quick as that: no small drafts on a machine that has much to do.
+        runner.seconds = 1e-6
+        controller.edit_params(1, StubParams(level=level), "level", False)
+        qtbot.waitUntil(lambda: controller.column_scene(1).result.job.params.level == level, timeout=PATIENCE_MS)
+
+    # Numbers that are new enough make way.
+    runner._measured_s = time.monotonic() + 1e6
+    drag(2.0)
+    qtbot.waitUntil(lambda: begun.acquire(blocking=False), timeout=PATIENCE_MS)
+    drag(2.5)
+    qtbot.waitUntil(lambda: begun.acquire(blocking=False), timeout=PATIENCE_MS)
+    # Old ones are made beside the next pictures.
+    runner._measured_s = 0.0
+    points = len(controller.scene().points)
+    drag(3.2)
+    drag(3.6)
+    assert not begun.acquire(blocking=False)
+    may_end.release()
+    qtbot.waitUntil(lambda: controller.column_scene(1).measures == {"contrast": 2.5}, timeout=PATIENCE_MS)
+    assert controller.column_scene(1).result.job.params.level == 3.6
+    # They are no point of the picture that is shown, which is measured next.
+    assert len(controller.scene().points) == points
+    may_end.release()
+    qtbot.waitUntil(lambda: controller.column_scene(1).measures == {"contrast": 3.6}, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not controller.measuring, timeout=PATIENCE_MS)
+    assert len(controller.scene().points) == points + 1
 
 
 def test_a_draft_is_measured_at_its_own_size(qtbot, bench):

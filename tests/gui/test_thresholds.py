@@ -11,6 +11,7 @@ from de_bonet_scenes import exemplar, finished, scene
 from dock_scenes import check_controls, feed, shown
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QKeySequence
+from threshold_hand import Hand
 
 from tests.gui.conftest import drag, move, wait_idle
 from texlab.docks.thresholds import knob
@@ -130,52 +131,6 @@ def test_shares_that_pass():
 
 
 # The dock alone.
-
-
-class Hand:
-    """A dock with the scene that follows what it does, as the window would make it follow."""
-
-    def __init__(self, qtbot, *, channels=3):
-        self.qtbot = qtbot
-        self.dock = shown(qtbot, ThresholdsDock(), 1100, 260)
-        self.column = finished(channels)
-        self.edits = []
-        self.dock.editor.edited.connect(self._edited)
-        self.feed()
-
-    def _edited(self, table, final):
-        self.edits.append((table, final))
-        self.column = dataclasses.replace(self.column, params=self.column.params.replace(thresholds=table))
-
-    def feed(self):
-        return feed(self.dock, scene(self.column))
-
-    @property
-    def editor(self):
-        return self.dock.editor
-
-    @property
-    def table(self):
-        return self.column.params.thresholds
-
-    def at(self, row, column):
-        editor = self.editor
-        if row < 0:
-            return editor.column_rect(column).center().toPoint()
-        return (editor.row_rect(row) if column < 0 else editor.cell_rect(row, column)).center().toPoint()
-
-    def drag(self, row, column, dx, dy):
-        start = self.at(row, column)
-        drag(self.qtbot, self.editor, [start, start + QPoint(dx // 2, dy // 2), start + QPoint(dx, dy)])
-
-    def click(self, row, column, modifier=Qt.KeyboardModifier.NoModifier):
-        self.qtbot.mouseClick(self.editor, LEFT, modifier, self.at(row, column))
-
-    def key(self, key, modifier=Qt.KeyboardModifier.NoModifier):
-        self.qtbot.keyClick(self.editor, key, modifier)
-
-    def settle(self):
-        self.qtbot.waitUntil(lambda: bool(self.edits) and self.edits[-1][1])
 
 
 @pytest.fixture
@@ -425,15 +380,16 @@ def test_the_line_on_the_histogram_edits_the_cell(hand, qtbot):
     hand.click(1, 1)
     answer = hand.feed()
     view = hand.dock.distances
-    assert view.share == pytest.approx(answer.passing(0.15))
-    assert hand.dock.passing.text() == f"lets {answer.passing(0.15):.1%} of all pairs through"
+    passing = answer.distances.passing
+    assert view.share == pytest.approx(passing(0.15))
+    assert hand.dock.passing.text() == f"lets {passing(0.15):.1%} of all pairs through"
     start = QPoint(round(view.line_x()), view.height() // 2)
     drag(qtbot, view, [start, start + QPoint(20, 0), start + QPoint(50, 0)])
     value = hand.table.cells[0][1]
     assert float(SCALE.place(value)) - float(SCALE.place(0.15)) == pytest.approx(
         50 / (view.width() - 16), abs=0.01
     )
-    assert view.share == pytest.approx(answer.passing(value))
+    assert view.share == pytest.approx(passing(value))
     assert [final for _, final in hand.edits].count(True) == 1
     view.setFocus()
     qtbot.keyClick(view, Qt.Key.Key_Left)

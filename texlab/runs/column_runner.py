@@ -85,8 +85,9 @@ class ColumnRunner(QObject):
         self._run: ColumnRun | None = None
         self._kept: Keep | None = None
         self._exemplar: ImageInput | None = None
-        # Whether the newest request measures the picture, and when one came to its end.
-        self._measuring = False
+        # What is measured, what is to be measured next, and when numbers came last.
+        self._measured: MeasureRun | None = None
+        self._unmeasured: MeasureRun | None = None
         self._measured_s = 0.0
         # Method and exemplar of the newest job.
         self._origin: tuple[str, str] | None = None
@@ -96,6 +97,11 @@ class ColumnRunner(QObject):
         self.worker.finished.connect(self._finished)
         self.worker.failed.connect(self._failed)
         self.worker.cancelled.connect(self._cancelled)
+        # Pictures never wait for numbers.
+        self.measurer = Worker(f"measures-{column.id}", shared.slots, self)
+        self.measurer.progressed.connect(self._show_measures)
+        self.measurer.finished.connect(self._measures_came)
+        self.measurer.failed.connect(self._measuring_failed)
 
     def show_stored(self, picture: Picture, measures: Mapping[str, float]) -> None:
         """Show the picture of an earlier result with its numbers until there is another one."""
@@ -121,12 +127,12 @@ class ColumnRunner(QObject):
     @property
     def measuring(self) -> bool:
         """Whether the numbers about the picture are still to come."""
-        return self._measuring
+        return self._measured is not None
 
     @property
-    def _hurries(self) -> bool:
-        """Whether measuring is to be stopped for the next picture."""
-        return self._measuring and time.monotonic() - self._measured_s < OVERDUE_S
+    def _overdue(self) -> bool:
+        """Whether what is shown of the numbers is so old that measuring goes on beside the next pictures."""
+        return time.monotonic() - self._measured_s >= OVERDUE_S
 
     # What it is asked for.
 
@@ -156,8 +162,10 @@ class ColumnRunner(QObject):
         size = draft_size(full, self.seconds) if smaller else None
         own_draft = size is not None and method.draft is not None
         # Within a drag every picture is finished, or none would be while the events come faster than they.
-        patient, self.drafted = draft and self.drafted and not self._hurries, draft
-        self._measuring, self._exemplar = False, exemplar
+        patient, self.drafted = draft and self.drafted, draft
+        self._exemplar = exemplar
+        if not (draft and self._overdue):
+            self._stop_measuring()
         self._live = draft and size is None and self.scene.status == "finished"
         self._announce(column, small=size is not None)
         make_job = partial(
@@ -223,11 +231,13 @@ class ColumnRunner(QObject):
     def await_exemplar(self, coming: bool) -> None:
         """Stop because of another exemplar; the column waits for it, or is idle when there is none."""
         self.worker.cancel()
+        self._stop_measuring()
         self._show(status="waiting" if coming else "idle", message="", result=None)
 
     def hold(self, column: Column, sentence: str) -> None:
         """Take a column's settings, and say what its run would take; it starts when the user asks for it."""
         self.worker.cancel()
+        self._stop_measuring()
         self._announce(column, small=False)
         self._show(status="idle", message=sentence, result=None, draft=False)
 
@@ -240,15 +250,17 @@ class ColumnRunner(QObject):
     @property
     def ended(self) -> bool:
         """Whether the thread has ended."""
-        return self.worker.ended
+        return self.worker.ended and self.measurer.ended
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
         self.worker.leave()
+        self.measurer.leave()
 
     def close(self) -> None:
         """Stop the thread and wait for its end."""
         self.worker.close()
+        self.measurer.close()
 
     # The worker reports.
 
@@ -257,13 +269,10 @@ class ColumnRunner(QObject):
         self.changed.emit()
 
     def _started(self) -> None:
-        if not self._live and not self._measuring:
+        if not self._live:
             self._show(status="running", message="")
 
-    def _progressed(self, report: Progress | Waits | Measured) -> None:
-        if isinstance(report, Measured):
-            self._show_measures(report)
-            return
+    def _progressed(self, report: Progress | Waits) -> None:
         if isinstance(report, Waits):
             self._show(message=report.reason)
             return
@@ -278,24 +287,47 @@ class ColumnRunner(QObject):
             changes |= {"picture": report.picture, "image": report.image}
         self._show(**changes)
 
-    def _finished(self, end: Finished | Drafted | Measured) -> None:
-        if isinstance(end, Measured):
-            self._measuring, self._measured_s = False, time.monotonic()
-            history = self.scene.history
-            if not self.scene.draft and self.scene.result is not None:
-                history = measured(history, self.scene.result.job.key, end.measures)
-            self._show_measures(end, findings=end.findings, unexamined=end.unexamined, history=history)
-            return
+    def _finished(self, end: Finished | Drafted) -> None:
         self._came(end)
-        if not self.worker.behind and self._exemplar is not None:
-            # The picture is shown first; measuring it ends when another one is asked for.
-            result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
-            self._measuring = True
-            self.worker.submit(MeasureRun(image, self._exemplar, result, self._shared.prepared, self.scene.draft))
+        if self._exemplar is None or (self.worker.behind and not self._overdue):
+            return
+        result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
+        quick = self.scene.draft or self.drafted
+        self._unmeasured = MeasureRun(image, self._exemplar, result, self._shared.prepared, quick)
+        if self._measured is None:
+            self._measure_next()
+
+    # Numbers about the picture.
+
+    def _measure_next(self) -> None:
+        self._measured, self._unmeasured = self._unmeasured, None
+        if self._measured is not None:
+            self.measurer.submit(self._measured)
+
+    def _stop_measuring(self) -> None:
+        self._measured = self._unmeasured = None
+        self.measurer.cancel()
+
+    def _measures_came(self, end: Measured) -> None:
+        self._measured_s = time.monotonic()
+        history = self.scene.history
+        if not self.scene.draft and self.scene.result is not None:
+            history = measured(history, self.scene.result.job.key, end.measures)
+        self._show_measures(end, findings=end.findings, unexamined=end.unexamined, history=history)
+        self._measure_next()
+
+    def _measuring_failed(self, sentence: str) -> None:
+        # The picture is there all the same.
+        log.warning("A picture could not be measured: %s", sentence)
+        self._show(unexamined=BROKEN)
+        self._measure_next()
 
     def _show_measures(self, found: Measured, **more: Any) -> None:
-        self._show(measures=found.measures, measured_size=found.size, **more)
-        self._shared.points.note(self.scene)
+        # While a control is dragged they may be about the picture before: shown, but kept of none.
+        same = self._measured is not None and self._measured.image is self.scene.image
+        self._show(measures=found.measures, measured_size=found.size, **(more if same else {}))
+        if same:
+            self._shared.points.note(self.scene)
 
     def _came(self, end: Finished | Drafted) -> None:
         behind = self.worker.behind
@@ -330,18 +362,9 @@ class ColumnRunner(QObject):
         self._show(**changes)
 
     def _failed(self, sentence: str) -> None:
-        if self._measuring:
-            # The picture is there all the same.
-            log.warning("A picture could not be measured: %s", sentence)
-            self._measuring = False
-            self._show(unexamined=BROKEN)
-            return
         self._live = False
         self._show(status="failed", message=sentence, result=None, draft=False, picture=None, image=None)
 
     def _cancelled(self) -> None:
-        if self._measuring:
-            self._measuring = False
-            return
         self._live = False
         self._show(status="cancelled", message="", draft=False)

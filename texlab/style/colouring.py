@@ -260,6 +260,6 @@ HISTOGRAM_TABLES = {
 }
 # Weak enough for numbers on every colour, and for marks over them.
 QUIET_TABLES = {
-    "light": lookup_table(((250, 250, 248), (222, 233, 240), (170, 203, 224))),
-    "dark": lookup_table(((30, 32, 35), (40, 58, 72), (52, 92, 120))),
+    "light": lookup_table(((255, 255, 255), (222, 233, 240), (170, 203, 224))),
+    "dark": lookup_table(((40, 43, 48), (44, 64, 80), (52, 92, 120))),
 }

@@ -6,28 +6,36 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
-from texlab.docks.thresholds.distance_view import Distances, DistanceView
+from texlab.docks.thresholds import binds
+from texlab.docks.thresholds.distance_view import DistanceView
 from texlab.docks.thresholds.editor import TableEditor
+from texlab.docks.thresholds.law_line import LawLine
+from texlab.docks.thresholds.rows import pasted, rows_text
 from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view, origin_of, table_field
-from texlab.state.intentions import EditField
+from texlab.state.intentions import EditField, Tell
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
-from texlab_core.errors import Cancelled
+from texlab_core.errors import Cancelled, InputError
+from texlab_core.methods.de_bonet.report import DeBonetDetails
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+    from typing import Any
 
     from texlab.docks.thresholds.table import Origin, TableView
     from texlab.state.scene import ColumnScene, Scene
     from texlab_core.engine.inputs import ImageInput
+    from texlab_core.methods.de_bonet.binding import Binding
+    from texlab_core.methods.de_bonet.sampling import Sampling
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
 
 SIDE = 250
@@ -50,8 +58,8 @@ class ThresholdsDock(FramedDock):
     help = (
         "Every threshold of the table T: one row for each level (k = 1 is the coarsest), one column for each "
         "feature. Drag a cell up or down, or the head of a row or a column (Shift: finely). A corner marks what "
-        "was set by hand; all other cells follow the law α / k^β. Beside it: what the chosen threshold lets "
-        "through."
+        "was set by hand; all other cells follow the law α / k^β; neighbours that hold the same are one field. "
+        "Beside it: what the chosen threshold lets through."
     )
     order = 24
     rest_ms = 0
@@ -63,6 +71,8 @@ class ThresholdsDock(FramedDock):
         self._column: ColumnScene | None = None
         self._exemplar: ImageInput | None = None
         self._field = ""
+        self._sampling: Sampling | None = None
+        self._found: Binding | None = None
         self.editor = TableEditor("thresholds-table")
         self.distances = DistanceView("thresholds-distances")
         self._build_controls()
@@ -79,6 +89,11 @@ class ThresholdsDock(FramedDock):
             "Of the column's newest result: how many candidates a typical pixel was chosen from, and the share of "
             "neighbouring pixels that were copied together",
         )
+        self.binding_words = Label()
+        self.binding_words.setObjectName("thresholds-binding")
+        self.binding_words.setWordWrap(True)
+        self.law = LawLine("thresholds_law")
+        self.law.edited.connect(self._edit_law)
         beside = QWidget()
         beside.setFixedWidth(SIDE)
         column = QVBoxLayout(beside)
@@ -88,9 +103,14 @@ class ThresholdsDock(FramedDock):
         column.addWidget(self.distances, 1)
         column.addWidget(self.passing)
         column.addWidget(self.measures)
+        column.addWidget(self.binding_words)
+        table = QVBoxLayout()
+        table.setSpacing(2)
+        table.addWidget(self.law)
+        table.addWidget(self.editor, 1)
         layout = QHBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
-        layout.addWidget(self.editor, 1)
+        layout.addLayout(table, 1)
         layout.addWidget(beside)
         self.setFocusProxy(self.editor)
         self.editor.edited.connect(self._edit)
@@ -99,6 +119,9 @@ class ThresholdsDock(FramedDock):
         self.editor.locks_changed.connect(self._remember_locks)
         self.editor.painting_changed.connect(self.paint.setChecked)
         self.editor.picked.connect(self.value.setValue)
+        self.editor.copied.connect(self.copy_rows)
+        self.editor.pasted.connect(self.paste_rows)
+        self.editor.say_more(self._more_words)
         self.distances.edited.connect(lambda value, final: self.editor.set_value(value, final=final))
 
     def _build_controls(self) -> None:
@@ -129,8 +152,20 @@ class ThresholdsDock(FramedDock):
             ("reset", "Reset", "Let the selected cells follow the law again (Delete)", editor.reset_selected),
             ("reset-all", "Reset all", "Let every cell follow the law again, but for locked ones",
              editor.reset_all),
+            ("copy", "Copy rows", "Copy the rows of the selected cells as text: into another column's table, or a "
+             "spreadsheet (Ctrl+C)", self.copy_rows),
+            ("paste", "Paste rows", "Paste copied rows: a single one into every selected row, several where they "
+             "came from (Ctrl+V)", self.paste_rows),
         ):  # fmt: skip
             self.add_button(name, label, tip, act)
+        self.colouring = self.add_choice(
+            "colouring",
+            "Colour",
+            "Colour cells by their thresholds; by the share of their level's exclusions that each alone causes; "
+            "or by the candidates that each would add if it let everything through",
+            binds.COLOURINGS,
+            self._colouring_changed,
+        )
 
     # Asking and showing.
 
@@ -157,11 +192,18 @@ class ThresholdsDock(FramedDock):
         self._show_table(column, field)
         k, name = self.editor.selected_cells()[-1]
         model, feature = axes.model, [each.name for each in axes.features].index(name)
+        sampling = self._sampling if self.colouring.currentData() != "values" else None
 
-        def compute(should_stop: Callable[[], bool]) -> Distances:
-            return Distances.of(model, k, feature)
+        def compute(should_stop: Callable[[], bool]) -> binds.Answered:
+            return binds.answer(model, k, feature, sampling, lambda: self._sampling, should_stop)
 
-        return Question((self.name, Same(model), k, feature), compute)
+        return Question((self.name, Same(model), k, feature, Same(sampling)), compute)
+
+    def show_scene(self, scene: Scene) -> None:
+        """Take note of the newest result: what is computed for an older one stops."""
+        column = scene.selected
+        details = column.result.details if column is not None and column.result is not None else None
+        self._sampling = details.sampling if isinstance(details, DeBonetDetails) else None
 
     def _ask_axes(self, column: ColumnScene, exemplar: ImageInput) -> Question:
         """Ask for the analysis of a column that was stopped before it had a result."""
@@ -178,23 +220,32 @@ class ThresholdsDock(FramedDock):
 
         return Question((self.name, column_id, origin), compute)
 
-    def show_answer(self, answer: Distances | Known) -> None:
+    def show_answer(self, answer: binds.Answered | Known) -> None:
         """Show the distances of the chosen cell, or ask for them when levels and features are known by now."""
         if isinstance(answer, Known):
             self._known.learn(answer.column_id, answer.axes, answer.origin)
             self.ask()
             return
-        self.distances.show_distances(answer)
+        self.distances.show_distances(answer.distances)
+        # While a newer result is looked into, that of the last one stays.
+        if answer.found is not None or self.colouring.currentData() == "values":
+            self._found = answer.found
+        self._show_binding()
         self._show_cell()
 
     def _show_table(self, column: ColumnScene, field: str) -> None:
         if self._column is None or column.id != self._column.id:
             self.editor.set_locked(self._locks.get(column.id, frozenset()))
+            self._found = None
         self._column, self._field = column, field
         view = self._view(column, getattr(column.params, field))
         self.arrangement.setVisible(view is not None and len(view.axes.channels) > 1)
         self.editor.show_view(view)
+        if view is not None:
+            self.editor.show_counts(binds.counts(column, view.axes.depth))
+            self.law.show_law(column.params, view.axes.depth)
         self.measures.setText(measures_text(column))
+        self._show_binding()
 
     def _view(self, column: ColumnScene, table: ThresholdTable) -> TableView | None:
         axes = self._known.of(column, self._exemplar)
@@ -217,10 +268,40 @@ class ThresholdsDock(FramedDock):
         share = self.distances.share
         self.passing.setText("" if share is None else f"lets {share:.1%} of all pairs through")
 
+    def _show_binding(self) -> None:
+        """Colour the table by what its cells exclude, where that is wanted and known."""
+        view, found, colouring = self.editor.view, self._found, self.colouring.currentData()
+        shown = found is not None and view is not None and colouring != "values"
+        numbers = binds.of_cells(view, found, colouring) if shown else None  # type: ignore[arg-type]
+        self.editor.show_shading(None if numbers is None else binds.shading(numbers))
+        words = ""
+        if colouring != "values":
+            words = "" if view is None or found is None else binds.strictest(view, found)
+            words = words or "What binds is known as soon as there is a result."
+        self.binding_words.setText(words)
+        self.binding_words.setVisible(bool(words))
+
+    def _more_words(self, row: int, column: int) -> str:
+        view, found = self.editor.view, self._found
+        words = "" if view is None or found is None else binds.words(view, found, row, column)
+        return f"; {words}" if words else ""
+
+    def _colouring_changed(self) -> None:
+        self._show_binding()
+        self.ask()
+
     def _rearrange(self) -> None:
         if self._column is not None and self.editor.view is not None:
             self.editor.show_view(self._view(self._column, self.editor.view.table))
         self.ask()
+
+    def settings(self) -> dict[str, bool | int | float | str]:
+        """Return how the controls stand; the threshold of the chosen cell is a parameter, not a setting."""
+        return {name: value for name, value in super().settings().items() if name != "value"}
+
+    def take_settings(self, wanted: Mapping[str, Any]) -> tuple[str, ...]:
+        """Set controls by name; never a threshold."""
+        return super().take_settings({name: value for name, value in wanted.items() if name != "value"})
 
     # What the user does.
 
@@ -229,10 +310,40 @@ class ThresholdsDock(FramedDock):
         if self.distances.busy:
             self.distances.settle()
         self.editor.settle()
+        self.law.settle()
 
     def _edit(self, table: ThresholdTable, final: bool) -> None:
         if self._column is not None:
             self.intention.emit(EditField(self._column.id, self._field, table, final))
+
+    def _edit_law(self, name: str, value: float, final: bool) -> None:
+        if self._column is not None:
+            self.intention.emit(EditField(self._column.id, name, value, final))
+
+    def copy_rows(self) -> None:
+        """Put the rows of the selected cells on the clipboard."""
+        view = self.editor.view
+        if view is None:
+            return
+        rows = {row for row, _ in self.editor.selection.places()}
+        QGuiApplication.clipboard().setText(rows_text(view, rows))
+        self.intention.emit(Tell(f"{len(rows)} row{'s' * (len(rows) != 1)} copied."))
+
+    def paste_rows(self) -> None:
+        """Set what copied rows say; locked cells stay."""
+        view = self.editor.view
+        if view is None:
+            return
+        try:
+            cells, note = pasted(
+                QGuiApplication.clipboard().text(), view, {r for r, _ in self.editor.selection.places()}
+            )
+        except InputError as bad:
+            self.intention.emit(Tell(str(bad), problem=True))
+            return
+        self.editor.change(cells, final=True)
+        if note:
+            self.intention.emit(Tell(note))
 
     def _value_set(self, value: float) -> None:
         self.editor.set_paint_value(value)

@@ -38,10 +38,19 @@ STEPS = {
     Qt.Key.Key_PageUp: LEAP,
     Qt.Key.Key_PageDown: -LEAP,
 }
+COUNTS_TIP = (
+    "Of the newest result: how many candidates a typical pixel's ancestor has left once this level was compared "
+    "too (median)"
+)
+SEQUENCES = (
+    QKeySequence.StandardKey.SelectAll,
+    QKeySequence.StandardKey.Copy,
+    QKeySequence.StandardKey.Paste,
+)
 HINT = (
     "Drag a cell up or down to change it, the head of a row or a column to change all of it (Shift: finely). "
     "Arrows move, Ctrl+arrows select more, + - PgUp PgDn change, digits type a value, Delete lets the law decide "
-    "again, L locks, M mirrors, P paints."
+    "again, L locks, M mirrors, P paints, Ctrl+C and Ctrl+V copy and paste rows."
 )
 
 
@@ -60,16 +69,20 @@ class TableEditor(EditableTable):
     """Edits a threshold table.
 
     ``painting_changed(on)``: the mouse paints, or drags. ``picked(value)``: a value was picked with Alt+click.
+    ``copied()`` and ``pasted()``: rows are to be copied to the clipboard, or taken from it.
     """
 
     painting_changed = Signal(bool)
     picked = Signal(float)
+    copied = Signal()
+    pasted = Signal()
 
     def __init__(self, name: str, parent: QWidget | None = None) -> None:
         super().__init__(name, parent)
         set_tip(self, HINT)
         self.setMouseTracking(True)
         self._drag: _Drag | None = None
+        self._more: Callable[[int, int], str] | None = None
         self._painting = False
         self._paint_value = 0.15
         self._keys: dict[Qt.Key, Callable[[], None]] = {
@@ -215,14 +228,25 @@ class TableEditor(EditableTable):
             place = self.at(event.pos().x(), event.pos().y())
             if place is not None and min(place) >= 0:
                 locked = set(self._view.cells(*place)) <= self._locked
-                words = self._view.describe(*place) + (", locked" if locked else "")
+                words = self._view.describe(*place) + (", locked" if locked else "") + self.more_words(*place)
                 show_tip(event.globalPos(), words, self)
+                return True
+            if event.pos().x() > self.counts_left():
+                show_tip(event.globalPos(), COUNTS_TIP, self)
                 return True
         return super().event(event)
 
+    def more_words(self, row: int, column: int) -> str:
+        """Return what else is said about a cell."""
+        return "" if self._more is None else self._more(row, column)
+
+    def say_more(self, more: Callable[[int, int], str] | None) -> None:
+        """Let tool tips say more about cells."""
+        self._more = more
+
     def _wants(self, event: QKeyEvent) -> bool:
         key = Qt.Key(event.key())
-        if key in ARROWS or event.matches(QKeySequence.StandardKey.SelectAll):
+        if key in ARROWS or any(map(event.matches, SEQUENCES)):
             return True
         others = ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
         plain = event.modifiers() & others == Qt.KeyboardModifier.NoModifier
@@ -235,6 +259,10 @@ class TableEditor(EditableTable):
             super().keyPressEvent(event)
         elif event.matches(QKeySequence.StandardKey.SelectAll):
             self.select_all()
+        elif event.matches(QKeySequence.StandardKey.Copy):
+            self.copied.emit()
+        elif event.matches(QKeySequence.StandardKey.Paste):
+            self.pasted.emit()
         elif key in ARROWS:
             self._move(*ARROWS[key], extend=bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
         elif key in STEPS:

@@ -13,16 +13,18 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from texlab.docks.thresholds.numbers import NumberWriter
 from texlab.docks.thresholds.painting import (
     CHANNEL_COLOURS,
-    cell_colours,
+    cell_colour,
     colours,
     draw_corner,
     draw_glyph,
     draw_lock,
+    shades,
 )
-from texlab.docks.thresholds.table import cell_text
+from texlab.docks.thresholds.table import cell_texts, runs
 from texlab.style.theme import DARK, LIGHT
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from PySide6.QtGui import QPaintEvent, QResizeEvent
 
     from texlab.docks.thresholds.table import Head, TableView
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 GROUP_GAP = 5.0
 STRIP = 3.0
+COUNTED = "left"
 
 
 class Grid(NamedTuple):
@@ -56,6 +59,8 @@ class TableMap(QWidget):
         self._grid: Grid | None = None
         self._writer: NumberWriter | None = None
         self._locked: frozenset[tuple[int, str]] = frozenset()
+        self._shading: NDArray[np.float64] | None = None
+        self._counts: tuple[str, ...] = ()
         vertical = QSizePolicy.Policy.Fixed if small else QSizePolicy.Policy.Expanding
         self.setSizePolicy(QSizePolicy.Policy.Expanding, vertical)
 
@@ -71,6 +76,19 @@ class TableMap(QWidget):
             self._grid = None
             self.updateGeometry()
         if before is None or view is None or not view.looks_like(before):
+            self.update()
+
+    def show_shading(self, shares: NDArray[np.float64] | None) -> None:
+        """Colour the cells by shares (rows, columns) in 0 .. 1 instead of by their thresholds, or no longer."""
+        if shares is not self._shading:
+            self._shading = shares
+            self.update()
+
+    def show_counts(self, counts: tuple[str, ...]) -> None:
+        """Write a number behind every row, or none."""
+        if counts != self._counts:
+            self._counts = counts
+            self._grid = None
             self.update()
 
     def set_theme(self, theme: Theme) -> None:
@@ -137,7 +155,7 @@ class TableMap(QWidget):
             rows, columns = self._view.values.shape
             left, top = self._left(), self._top()
             gaps = [0.0, *(GROUP_GAP * (one.group != other.group) for one, other in pairwise(heads))]
-            width = max(3.0, (self.width() - left - 1 - sum(gaps)) / columns)
+            width = max(3.0, (self.width() - left - 1 - sum(gaps) - self._right()) / columns)
             lefts = left + np.arange(columns) * width + np.cumsum(gaps)
             height = max(3.0, (self.height() - top - 1) / max(rows, 1))
             self._grid = Grid(tuple(lefts.tolist()), top, width, height, heads)
@@ -149,6 +167,17 @@ class TableMap(QWidget):
         metrics = self.fontMetrics()
         lines = [line for name in self._row_names() for line in name.split("\n")]
         return max((metrics.horizontalAdvance(line) for line in lines), default=0) + 8.0
+
+    def _right(self) -> float:
+        """Return the room for the numbers behind the rows."""
+        if not self._counts or self._small:
+            return 0.0
+        metrics = self.fontMetrics()
+        return max(metrics.horizontalAdvance(words) for words in (COUNTED, *self._counts)) + 10.0
+
+    def counts_left(self) -> float:
+        """Return where the numbers behind the rows begin; the right border without them."""
+        return self.width() - self._right()
 
     def _top(self) -> float:
         return STRIP + 2.0 if self._small else self.fontMetrics().height() + self._glyph_side() + 6.0
@@ -194,6 +223,15 @@ class TableMap(QWidget):
             # The size of the level is left out where there is no room for two lines.
             low = area.height() < 2 * self.fontMetrics().lineSpacing()
             painter.drawText(area, flags, name.split("\n")[0] if low else name)
+        room = self._right()
+        if room:
+            grid = self._geometry()
+            right = QRectF(self.width() - room, 0, room - 2, grid.top - 2)
+            painter.drawText(right, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom, COUNTED)
+            for row, words in enumerate(self._counts[: self._rows()]):
+                painter.drawText(
+                    QRectF(right.left(), self.row_rect(row).top(), right.width(), grid.height), flags, words
+                )
 
     def _paint_columns(self, painter: QPainter) -> None:
         assert self._view is not None
@@ -223,33 +261,42 @@ class TableMap(QWidget):
     def _paint_cells(self, painter: QPainter) -> None:
         view = self._view
         assert view is not None
-        table = colours(view.values)
+        shown = self._shading if self._shading is not None and self._shading.shape == view.values.shape else None
+        table = colours(view.values, self._theme) if shown is None else shades(shown, self._theme)
         writer = self._writer_for_cells()
-        for row in range(view.values.shape[0]):
-            for column in range(view.values.shape[1]):
-                area = self.cell_rect(row, column).adjusted(0, 0, -1, -1)
-                fill, ink = cell_colours(*(int(part) for part in table[row, column]))
-                painter.fillRect(area, fill)
-                if not self._small:
-                    painter.setPen(ink)
-                    bold = bool(view.changed[row, column])
-                    writer.write(painter, _texts(view, row, column), area, bold=bold)
-                if view.changed[row, column]:
-                    draw_corner(painter, area, ink)
-                if self._locked and all(cell in self._locked for cell in view.cells(row, column)):
+        ink = QColor(self._theme.text)
+        for row, parts in enumerate(runs(view, self._locked)):
+            for first, last in parts:
+                for column in range(first, last + 1):
+                    # Cells that hold the same are one field, unless their colours say more.
+                    joined = shown is None and column < last
+                    area = self.cell_rect(row, column).adjusted(0, 0, 1 if joined else -1, -1)
+                    painter.fillRect(area, cell_colour(*(int(part) for part in table[row, column])))
+                self._paint_number(painter, writer, row, first, last)
+                area = self.cell_rect(row, first).adjusted(0, 0, -1, -1)
+                if view.changed[row, first]:
+                    draw_corner(painter, area, QColor(self._theme.accent))
+                if self._locked and all(cell in self._locked for cell in view.cells(row, first)):
                     draw_lock(painter, area, ink)
 
+    def _paint_number(self, painter: QPainter, writer: NumberWriter, row: int, first: int, last: int) -> None:
+        view = self._view
+        assert view is not None
+        if self._small:
+            return
+        painter.setPen(QColor(self._theme.text))
+        area = self.cell_rect(row, first).united(self.cell_rect(row, last)).adjusted(0, 0, -1, -1)
+        writer.write(painter, _texts(view, row, first), area, bold=bool(view.changed[row, first]))
+
     def _writer_for_cells(self) -> NumberWriter:
-        grid = self._geometry()
-        key = (self.font().key(), grid.width - 1, grid.height - 1)
-        if self._writer is None or self._writer.key != key:
-            self._writer = NumberWriter(self.font(), grid.width - 1, grid.height - 1)
+        if self._writer is None or self._writer.key != self.font().key():
+            self._writer = NumberWriter(self.font())
         return self._writer
+
+    def _rows(self) -> int:
+        return self._view.axes.depth if self._view is not None else 0
 
 
 def _texts(view: TableView, row: int, column: int) -> tuple[str, ...]:
     """Return what may be written into a cell, the fullest first."""
-    if view.mixed[row, column]:
-        return ("≠",)
-    value = float(view.values[row, column])
-    return tuple(cell_text(value, digits) for digits in (3, 2, 1))
+    return ("≠",) if view.mixed[row, column] else cell_texts(float(view.values[row, column]))

@@ -10,12 +10,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPen, QPolygonF
 
 from texlab.docks.thresholds.table import SoftLog
-from texlab.style.colouring import SEQUENTIAL_TABLE, ink_on, paint
+from texlab.style.colouring import QUIET_TABLES, paint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtGui import QPainter
 
+    from texlab.style.theme import Theme
     from texlab_core.methods.de_bonet.features import Feature
 
 # Thresholds of use lie between 0.01 and 4; what is larger lets everything through.
@@ -24,15 +25,20 @@ ROOM_FOR_LOCK = 30.0
 CHANNEL_COLOURS = {"red": "#d5453b", "green": "#2f9e52", "blue": "#3f7fe0"}
 
 
-def colours(values: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Return the colour of every threshold, (..., 3) uint8."""
-    return paint(SCALE.place(values).astype(np.float32), SEQUENTIAL_TABLE)
+def colours(values: NDArray[np.float64], theme: Theme) -> NDArray[np.uint8]:
+    """Return the colour of every threshold, (..., 3) uint8: what the theme's text can be read on."""
+    return shades(SCALE.place(values), theme)
+
+
+def shades(shares: NDArray[np.float64], theme: Theme) -> NDArray[np.uint8]:
+    """Return the colours of shares 0 .. 1, (..., 3) uint8: what the theme's text can be read on."""
+    return paint(shares.astype(np.float32), QUIET_TABLES[theme.name])
 
 
 @lru_cache(maxsize=1024)
-def cell_colours(red: int, green: int, blue: int) -> tuple[QColor, QColor]:
-    """Return the colour of a cell and of what is written on it."""
-    return QColor(red, green, blue), QColor(ink_on(red, green, blue))
+def cell_colour(red: int, green: int, blue: int) -> QColor:
+    """Return the colour of a cell."""
+    return QColor(red, green, blue)
 
 
 def draw_glyph(painter: QPainter, feature: Feature, area: QRectF, colour: QColor) -> None:

@@ -323,6 +323,37 @@ def mirrored(view: TableView, cells: Iterable[Cell]) -> dict[Cell, float]:
     return made
 
 
+def runs(view: TableView, locked: frozenset[Cell]) -> list[list[tuple[int, int]]]:
+    """Return, for every row, first and last column of neighbouring cells of a group that hold the same.
+
+    Cells that were set by hand, differ between channels or are locked stand alone.
+    """
+    found = []
+    for row in range(view.values.shape[0]):
+        parts: list[tuple[int, int]] = []
+        before: object = None
+        for column, head in enumerate(view.heads):
+            alone = view.changed[row, column] or view.mixed[row, column]
+            alone = alone or (bool(locked) and all(cell in locked for cell in view.cells(row, column)))
+            here = None if alone else (head.group, float(view.values[row, column]))
+            if here is not None and here == before:
+                parts[-1] = parts[-1][0], column
+            else:
+                parts.append((column, column))
+            before = here
+        found.append(parts)
+    return found
+
+
+def cell_texts(value: float) -> tuple[str, ...]:
+    """Return the ways in which a threshold can be written in a cell, the fullest first."""
+    ways = []
+    for digits in (3, 2, 1):
+        full = cell_text(value, digits)
+        ways += [full, full.replace("0.", ".", 1)] if full.startswith("0.") else [full]
+    return tuple(dict.fromkeys(ways))
+
+
 def cell_text(value: float, digits: int = 3) -> str:
     """Return a threshold as it is written in a cell: scientific only when it must be."""
     if value == 0:
