@@ -207,7 +207,7 @@ def test_a_large_picture_is_filled_around_its_hole_and_says_so(texlab: Texlab) -
     assert (shown.code, shown.err) == (0, "")
     assert "24 pixels were filled, each from one of about" in shown.out
     assert (
-        "Only what is within 128 pixels of a hole was looked at; reach=0 searches the whole picture." in shown.out
+        "Only what is within 64 pixels of a hole was looked at; reach=0 searches the whole picture." in shown.out
     )
     assert "A JPEG is compressed as a whole" in shown.out
 

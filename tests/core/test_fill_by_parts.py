@@ -282,8 +282,8 @@ def test_a_large_picture_is_searched_around_its_holes() -> None:
     plain = EfrosLeungParams()
     assert with_reach(plain, (512, 512)) == (plain, ())
     changed, said = with_reach(plain, (600, 600))
-    assert changed.to_json()["reach"] == 128
-    assert "within 128 pixels" in said[0]
+    assert changed.to_json()["reach"] == 64
+    assert "within 64 pixels" in said[0]
     assert with_reach(changed, (600, 600)) == (changed, ())
 
 

@@ -10,16 +10,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QFileDialog, QMenu
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.fill.dock import FillDock, mask_input, read_mask
-from texlab.docks.fill.mask_canvas import paint_line
+from texlab.docks.fill.dock import FillDock
+from texlab.docks.fill.masks import mask_input, read_mask
+from texlab.docks.fill.strokes import marked_box, stroke_box, stroke_lasso, stroke_line
 from texlab.storage import kept_inputs
 from texlab.storage.kept_inputs import input_to_json, keep_inputs, load_input
+from texlab_core.documents.reading import read_recipe
 from texlab_core.engine.inputs import ArraysInput, DataInput, ImageInput, hash_arrays
 from texlab_core.engine.registry import methods
+from texlab_core.engine.run import run
 from texlab_core.errors import InputError
+from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.formats.reading import read_image
+from texlab_core.images.formats.writing import write_image
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,8 +38,8 @@ places = st.tuples(st.floats(-5, 35), st.floats(-5, 25))
 
 @given(places, places, st.integers(1, 9))
 def test_a_line_covers_what_is_near_it(first: Any, last: Any, radius: int) -> None:
-    mask = np.zeros((30, 20), np.bool_)
-    paint_line(mask, first, last, radius, True)
+    mask = np.zeros((30, 20), np.uint8)
+    stroke_line(mask, first, last, radius, 1.0)
     for row in range(30):
         for column in range(20):
             shares = np.linspace(0, 1, 400)
@@ -42,7 +48,45 @@ def test_a_line_covers_what_is_near_it(first: Any, last: Any, radius: int) -> No
                 column + 0.5 - first[1] - shares * (last[1] - first[1]),
             ).min()
             if abs(near - radius) > 0.1:
-                assert mask[row, column] == (near < radius)
+                assert mask[row, column] == (255 if near < radius else 0)
+
+
+@given(places, places, st.integers(1, 9), st.floats(0, 0.9))
+def test_a_soft_brush_fades_from_its_hard_part_to_its_edge(
+    first: Any, last: Any, radius: int, hard: float
+) -> None:
+    shares = np.zeros((30, 20), np.uint8)
+    box = stroke_line(shares, first, last, radius, hard)
+    for row, column in ((0, 0), (7, 12), (15, 3), (29, 19)):
+        ends = np.linspace(0, 1, 400)
+        near = np.hypot(
+            row + 0.5 - first[0] - ends * (last[0] - first[0]),
+            column + 0.5 - first[1] - ends * (last[1] - first[1]),
+        ).min()
+        wanted = 255 * np.clip((radius - near) / (radius * (1 - hard)), 0, 1)
+        slope = 255 / (radius * (1 - hard))
+        assert abs(float(shares[row, column]) - wanted) <= 1 + 0.1 * slope
+    marked = marked_box(shares)
+    if marked is not None:
+        assert box is not None
+        for inner, outer in zip(marked, box, strict=True):
+            assert outer.start <= inner.start <= inner.stop <= outer.stop
+        stroke_line(shares, first, last, radius, 1.0, erase=True)
+        assert shares.max() == 0
+
+
+def test_a_lasso_marks_the_pixels_whose_centres_lie_inside() -> None:
+    shares = np.zeros((20, 20), np.uint8)
+    stroke_lasso(shares, [(2, 2), (2, 12), (12, 12), (12, 2)])
+    assert shares.sum() == 255 * 100
+    assert (shares[2:12, 2:12] == 255).all()
+    shares[:] = 0
+    stroke_lasso(shares, [(0, 0), (0, 16.5), (16.5, 0)])
+    rows, columns = np.indices((20, 20)) + 0.5
+    assert np.array_equal(shares > 0, rows + columns < 16.5)
+    assert stroke_lasso(shares, [(1, 1), (2, 2)]) is None
+    assert stroke_box(shares, (5, 5), (5, 9)) is None
+    assert stroke_box(shares, (-4, 3), (2, 40)) == (slice(0, 2), slice(3, 20))
 
 
 @pytest.fixture
@@ -50,6 +94,7 @@ def filling(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> 
     params = methods()["efros-leung"].params.from_json({"window": 7})
     explorer = open_window(str(texture), [("efros-leung", params)])
     dock = next(dock for dock in explorer.docks if isinstance(dock, FillDock))
+    assert dock.take_settings({"where": "exemplar"}) == ()
     explorer.window.docks["fill"].raise_()
     qtbot.waitUntil(lambda: dock.canvas.picture is not None, timeout=20_000)
     return explorer, dock
@@ -207,6 +252,192 @@ def test_a_picture_grows_outward(qtbot: Any, filling: tuple[Explorer, FillDock])
         if np.array_equal(image[row : row + 40, column : column + 48], original)
     ]
     assert len(inner) == 1
+
+
+# A whole picture, at its own resolution.
+
+
+@pytest.fixture
+def retouching(
+    qtbot: Any, open_window: Callable[..., Explorer], tmp_path: Path
+) -> tuple[Explorer, FillDock, np.ndarray]:
+    """A window with a picture of 16 bits that is larger than what the columns see, and its values."""
+    random = np.random.default_rng(3)
+    rows, columns = np.indices((200, 280))
+    waves = 22000 + 15000 * np.sin(columns / 3.0) * np.cos(rows / 4.0)
+    values = (waves[..., None] + random.integers(0, 900, (200, 280, 3))).astype(np.uint16)
+    write_image(tmp_path / "deep.png", values / np.float32(65535), bits=16)
+    explorer = open_window(
+        str(tmp_path / "deep.png"), [("efros-leung", methods()["efros-leung"].params(window=5))]
+    )
+    dock = next(dock for dock in explorer.docks if isinstance(dock, FillDock))
+    dock.reach.setValue(16)
+    explorer.window.docks["fill"].raise_()
+    qtbot.waitUntil(lambda: dock.canvas.picture is not None, timeout=20_000)
+    return explorer, dock, read_image(tmp_path / "deep.png", "deep").values
+
+
+def stroke(qtbot: Any, dock: FillDock, places: list[tuple[int, int]]) -> None:
+    canvas = dock.canvas
+    drag(qtbot, canvas.viewport(), [canvas.to_widget(row + 0.5, column + 0.5).toPoint() for row, column in places])
+
+
+def fill_it(qtbot: Any, explorer: Explorer, dock: FillDock) -> None:
+    count = len(dock._work.made)
+    qtbot.mouseClick(dock.fill_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(dock._work.made) > count, timeout=60_000)
+    wait_idle(qtbot, explorer)
+
+
+def save(
+    qtbot: Any, explorer: Explorer, dock: FillDock, path: Path, monkeypatch: pytest.MonkeyPatch
+) -> np.ndarray:
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *args, **more: (str(path), "PNG (*.png)"))
+    qtbot.mouseClick(dock.save_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(path.exists, timeout=20_000)
+    wait_idle(qtbot, explorer)
+    return read_image(path, "saved").values
+
+
+def test_a_whole_picture_is_filled_at_its_own_resolution_and_depth(
+    qtbot: Any,
+    retouching: tuple[Explorer, FillDock, np.ndarray],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    explorer, dock, values = retouching
+    assert dock.canvas.picture.shape == (200, 280, 3)
+    columns = ids(explorer)
+    dock.radius.setValue(4)
+    stroke(qtbot, dock, [(60, 60), (60, 66), (62, 72)])
+    first_hole = dock.canvas.mask
+    fill_it(qtbot, explorer, dock)
+    # It is filled here: no column has come.
+    assert ids(explorer) == columns
+    assert not dock.canvas.mask.any()
+    assert "pixels were filled, each from one of about" in explorer.window.message_bar.label.text()
+    first = save(qtbot, explorer, dock, tmp_path / "first.png", monkeypatch)
+    assert first.dtype == np.uint16
+    assert np.array_equal(first[~first_hole], values[~first_hole])
+    assert (first[first_hole] != values[first_hole]).any()
+    # The next hole, with a soft edge and another tool.
+    dock.hardness.setValue(50)
+    dock.tool.setCurrentIndex(dock.tool.findData("brush"))
+    stroke(qtbot, dock, [(62, 70), (70, 74)])
+    second_hole = dock.canvas.mask
+    assert ((dock.canvas.shares > 0) & (dock.canvas.shares < 255)).any()
+    fill_it(qtbot, explorer, dock)
+    second = save(qtbot, explorer, dock, tmp_path / "second.png", monkeypatch)
+    assert np.array_equal(second[~second_hole], first[~second_hole])
+    # Both fills come from the file alone.
+    again = run(read_recipe(tmp_path / "second.png").job())
+    assert np.array_equal(np.rint(again.image.astype(float) * 65535).astype(np.uint16), second)
+    # The last fill is taken back, with the hole that was painted for it.
+    qtbot.mouseClick(dock.undo_button, Qt.MouseButton.LeftButton)
+    assert np.array_equal(dock.canvas.mask, second_hole)
+    assert np.array_equal(save(qtbot, explorer, dock, tmp_path / "back.png", monkeypatch), first)
+    # Another try has another seed.
+    fill_it(qtbot, explorer, dock)
+    qtbot.mouseClick(dock.again_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: len(dock._work.made) == 2, timeout=60_000)
+    wait_idle(qtbot, explorer)
+    assert dock._work.made[1].seed == explorer.session.state.seed + 1
+    other = save(qtbot, explorer, dock, tmp_path / "other.png", monkeypatch)
+    assert (other[second_hole] != second[second_hole]).any()
+    assert np.array_equal(other[~second_hole], first[~second_hole])
+    # Another picture and back: what was painted and filled is still there.
+    stroke(qtbot, dock, [(150, 150), (152, 156)])
+    painted = dock.canvas.mask
+    explorer.opener.open("gallery:structured-pebbles")
+    qtbot.waitUntil(lambda: dock._work.picture.name.startswith("gallery"), timeout=20_000)
+    assert not dock.canvas.mask.any()
+    explorer.session.undo()
+    qtbot.waitUntil(lambda: dock._work.picture.name == "deep.png", timeout=20_000)
+    assert len(dock._work.made) == 2
+    assert np.array_equal(dock.canvas.mask, painted)
+    wait_idle(qtbot, explorer)
+
+
+def test_a_whole_picture_grows_by_margins_and_becomes_the_exemplar(
+    qtbot: Any, retouching: tuple[Explorer, FillDock, np.ndarray]
+) -> None:
+    explorer, dock, values = retouching
+    for box, margin in zip(dock.margins.boxes, (3, 0, 5, 2), strict=True):
+        box.setValue(margin)
+    dock.margins.button.click()
+    qtbot.waitUntil(lambda: dock._work.picture.size == (202, 288), timeout=60_000)
+    wait_idle(qtbot, explorer)
+    grown = np.rint(dock._work.picture.pixels.astype(float) * 65535).astype(np.uint16)
+    assert np.array_equal(grown[:200, 3:283], values)
+    assert dock._work.picture.depth == 16
+    qtbot.mouseClick(dock.use_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: explorer.session.state.sample.source.size == (202, 288), timeout=20_000)
+    assert explorer.session.state.sample.source.depth == 16
+    wait_idle(qtbot, explorer)
+
+
+def test_a_hole_is_filled_from_another_image_and_can_be_stopped(
+    qtbot: Any, retouching: tuple[Explorer, FillDock, np.ndarray], texture: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    explorer, dock, _ = retouching
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *args, **more: (str(texture), ""))
+    qtbot.mouseClick(dock.other_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dock.source.currentData() == "other", timeout=10_000)
+    assert not dock.reach.isEnabled()
+    dock.tool.setCurrentIndex(dock.tool.findData("lasso"))
+    dock._tool_changed()
+    stroke(qtbot, dock, [(40, 40), (40, 52), (50, 52), (50, 40)])
+    fill_it(qtbot, explorer, dock)
+    made = dock._work.made[0]
+    allowed = {tuple(pixel) for pixel in as_exemplar(texture).pixels.reshape(-1, 3)}
+    marked = made.patch[1]
+    assert {tuple(pixel) for pixel in made.found.result.image[marked]} <= allowed
+    # A hole of nearly everything takes long; it stops at once.
+    dock.canvas.set_mask(np.pad(np.ones((180, 260), bool), 10))
+    qtbot.mouseClick(dock.fill_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dock._filling.preview is not None, timeout=60_000)
+    assert dock.stop_button.isVisible()
+    qtbot.mouseClick(dock.stop_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dock._filling.status == "stopped", timeout=10_000)
+    assert len(dock._work.made) == 1
+    assert dock.canvas.mask.any()
+    wait_idle(qtbot, explorer)
+
+
+def test_the_panel_takes_the_stage_and_gives_it_back(
+    qtbot: Any, retouching: tuple[Explorer, FillDock, np.ndarray]
+) -> None:
+    explorer, dock, _ = retouching
+    window, stage = explorer.window, explorer.workspace
+    before = dock.canvas.height()
+    qtbot.mouseClick(dock.stage_switch, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dock.canvas.height() > before + 100, timeout=5_000)
+    assert not stage.isVisible()
+    window.message_bar.tell("A sentence.", "news")
+    assert window.message_bar.isVisible()
+    assert window.message_bar.parentWidget() is window
+    qtbot.mouseClick(window.big_panel.button, Qt.MouseButton.LeftButton)
+    assert stage.isVisible()
+    assert window.message_bar.parentWidget() is not window
+    window.actions_by_name["big-panel"].trigger()
+    assert not stage.isVisible()
+    window.actions_by_name["layout-explore"].trigger()
+    assert stage.isVisible()
+
+
+def test_the_right_button_offers_what_can_be_done(
+    qtbot: Any, retouching: tuple[Explorer, FillDock, np.ndarray]
+) -> None:
+    _, dock, _ = retouching
+    stroke(qtbot, dock, [(40, 40), (40, 52)])
+    dock.canvas.menu_wanted.emit(dock.mapToGlobal(dock.rect().center()))
+    menu = dock.findChild(QMenu, "fill-menu")
+    actions = {action.text(): action for action in menu.actions()}
+    assert actions["Fill"].isEnabled()
+    assert not actions["Save picture ..."].isEnabled()
+    actions["Invert"].trigger()
+    assert dock.canvas.mask.mean() > 0.9
+    menu.close()
 
 
 # What is kept with the session.

@@ -116,6 +116,7 @@ class Explorer(QObject):
             self.teacher.carry_out,
             self.opener.open_failure,
             self._open_tab,
+            window.take_stage,
         )
         self._closed = False
         self._memory = QTimer(self)

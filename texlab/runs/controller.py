@@ -13,6 +13,7 @@ from texlab.runs.column_run import with_exemplar
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
+from texlab.runs.fill_runner import FillRunner
 from texlab.runs.slots import Slots
 from texlab.runs.sweep_runner import SweepRunner
 from texlab.runs.tuning_runner import TuningRunner
@@ -30,6 +31,7 @@ from texlab_core.warming import Need, Warmth, every_need
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from texlab.state.filling import FillPlan
     from texlab.state.lesson_scene import LessonScene
     from texlab.state.scene import Frame
     from texlab.state.session import Column, Sample, Session, State
@@ -90,6 +92,8 @@ class Controller(QObject):
         self._sweeps.changed.connect(self._refresh.start)
         self._tuning = TuningRunner(self.slots, self.warmth, self)
         self._tuning.changed.connect(self._refresh.start)
+        self._fills = FillRunner(self.slots, self.warmth, self)
+        self._fills.changed.connect(self._refresh.start)
         self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
@@ -122,7 +126,14 @@ class Controller(QObject):
             self._shared.points.points,
             self._stage_of(self.session.selected_id),
             self._lesson,
+            self._source(),
+            self._fills.scene,
         )
+
+    def _source(self) -> ImageInput | None:
+        """Return the whole picture of the exemplar in use."""
+        sample = self.session.state.sample
+        return None if sample is None or self.prepared is None else sample.source
 
     def _stage_of(self, column_id: int) -> Frame | None:
         """Return the stage chosen in a column, as long as its run keeps it."""
@@ -155,7 +166,7 @@ class Controller(QObject):
     def busy(self) -> bool:
         """Whether any column waits or runs, or the exemplar is being prepared."""
         running = any(runner.busy for runner in self._runners.values())
-        return running or self._preparation.busy or self._errands.busy
+        return running or self._preparation.busy or self._errands.busy or self._fills.busy
 
     @property
     def preparing(self) -> bool:
@@ -311,6 +322,14 @@ class Controller(QObject):
         """Stop the search; its points stay."""
         self._tuning.stop()
 
+    def run_fill(self, plan: FillPlan) -> None:
+        """Fill a whole picture instead of one that is being filled."""
+        self._fills.start(plan)
+
+    def stop_fill(self) -> None:
+        """Stop the fill; the picture stays as it was."""
+        self._fills.stop()
+
     def once(
         self,
         name: str,
@@ -340,8 +359,10 @@ class Controller(QObject):
         self._runners.clear()
         self._leaving.clear()
 
-    def _threads(self) -> list[ColumnRunner | Preparation | SweepRunner | TuningRunner | Worker | Errands]:
-        others = (self._preparation, self._sweeps, self._tuning, self._warming, self._errands)
+    def _threads(
+        self,
+    ) -> list[ColumnRunner | Preparation | SweepRunner | TuningRunner | FillRunner | Worker | Errands]:
+        others = (self._preparation, self._sweeps, self._tuning, self._fills, self._warming, self._errands)
         return [*self._runners.values(), *self._leaving, *others]
 
     # The session has changed.

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab.state.filling import FillPlan
     from texlab.state.scene import Frame
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Mark
     from texlab_core.documents.lessons import LessonStep
-    from texlab_core.engine.inputs import Input
+    from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
 
@@ -96,6 +97,32 @@ class FillHoles:
     method: str
     inputs: tuple[tuple[str, Input], ...]
     size: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class RunFill:
+    """Fill a whole picture at its own resolution; what came out is told by the scene."""
+
+    plan: FillPlan
+
+
+@dataclass(frozen=True)
+class StopFill:
+    """Stop the fill of a whole picture."""
+
+
+@dataclass(frozen=True)
+class TakeExemplar:
+    """Make an image the exemplar."""
+
+    image: ImageInput
+
+
+@dataclass(frozen=True)
+class TakeStage:
+    """Let the panel of this name take the whole stage, or give it back."""
+
+    dock: str
 
 
 @dataclass(frozen=True)
@@ -296,6 +323,10 @@ Intention = (
     | EditInputs
     | EditSize
     | FillHoles
+    | RunFill
+    | StopFill
+    | TakeExemplar
+    | TakeStage
     | ChooseColumn
     | Point
     | Pin

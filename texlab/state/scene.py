@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from texlab.state.filling import NO_FILL, FillScene
 from texlab.state.lesson_scene import NO_LESSON, LessonScene
 from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
@@ -193,6 +194,10 @@ class Scene:
         The stage of the chosen column's run that the tabs look at; None: its result, or its newest preview.
     lesson
         The lesson that is given, and where the user's own ones are.
+    source
+        The whole picture that the exemplar is taken from; None where that is not known.
+    fill
+        The newest fill of a whole picture.
     """
 
     exemplar: ImageInput | None = None
@@ -205,6 +210,8 @@ class Scene:
     points: tuple[ShownCell, ...] = ()
     stage: Frame | None = None
     lesson: LessonScene = NO_LESSON
+    source: ImageInput | None = None
+    fill: FillScene = NO_FILL
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never
 
-from texlab.state.changes import with_cell
+from texlab.state.changes import sample_of, with_cell
 from texlab.state.intentions import (
     AskOnce,
     ChangeMethod,
@@ -24,15 +24,19 @@ from texlab.state.intentions import (
     OpenTab,
     Pin,
     Point,
+    RunFill,
     RunSweep,
     RunTuning,
     SaveStep,
     ShowMarks,
     ShowStage,
+    StopFill,
     StopSweep,
     StopTuning,
     TakeCell,
+    TakeExemplar,
     TakePicture,
+    TakeStage,
     Tell,
 )
 from texlab_core.engine.registry import find_method
@@ -66,6 +70,8 @@ class Carrier:
         Opens an example of the failure gallery by its name, with a column of another method beside it.
     open_tab
         Brings the tab of this name to the front and sets its controls by name.
+    take_stage
+        Lets the dock of this name take the whole stage, or give it back.
     """
 
     def __init__(
@@ -78,6 +84,7 @@ class Carrier:
         teach: Callable[[Intention], None],
         open_failure: Callable[[str, str], None],
         open_tab: Callable[[str, Mapping[str, Any]], None],
+        take_stage: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._controller = controller
         self._session = controller.session
@@ -88,6 +95,7 @@ class Carrier:
         self._teach = teach
         self._open_failure = open_failure
         self._open_tab = open_tab
+        self._take_stage = take_stage
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -134,6 +142,14 @@ class Carrier:
                 controller.run_sweep(column_id, plan)
             case StopSweep():
                 controller.stop_sweep()
+            case RunFill(plan):
+                controller.run_fill(plan)
+            case StopFill():
+                controller.stop_fill()
+            case TakeExemplar(image):
+                session.set_sample(sample_of(image, None))
+            case TakeStage(dock):
+                self._take_stage(dock)
             case RunTuning(column_id, plan):
                 controller.run_tuning(column_id, plan)
             case StopTuning():

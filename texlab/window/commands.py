@@ -106,6 +106,7 @@ COMMANDS = (
         "Show the panels, or only their names",
         separator=True,
     ),
+    Command("&View", "big-panel", "Panel over the stage", "Shift+F4", "The open panel large, or back"),
     Command("&View", "theme-auto", "Theme of the &system", "", "Follow the system", separator=True),
     Command("&View", "theme-light", "&Light theme", "", "Light"),
     Command("&View", "theme-dark", "&Dark theme", "", "Dark"),

@@ -134,6 +134,7 @@ class Handlers(QObject):
             "tile": stage.set_tiled,
             "link": stage.set_linked,
             "panels": self._window.strip.toggle,
+            "big-panel": self._window.take_stage,
             "crop": lambda: self._workspace.exemplar.crop_button.click(),
             "help": lambda: desk.show_help(self._chosen_method()),
             "help-window": lambda: desk.show_help("window"),
@@ -152,6 +153,7 @@ class Handlers(QObject):
         column = self._session.selected_column
         fields = describe(type(column.params)) if column is not None else ()
         table = any(field.type is ThresholdTable for field in fields)
+        self._window.big_panel.give_back()
         self._tuning.set_active(layout == "tune")
         self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
         self._workspace.fit()

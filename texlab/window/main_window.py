@@ -23,6 +23,7 @@ from texlab.form.panel import ParametersView
 from texlab.style.theme import apply_theme
 from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.plain import Label, set_tip
+from texlab.window.big_panel import BigPanel
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
 from texlab.window.layouts import SIDES, Layouts
@@ -92,6 +93,8 @@ class MainWindow(QMainWindow):
         self._middle_layout.setSpacing(0)
         self.lesson_bar = LessonBar(self.actions_by_name)
         self._middle_layout.addWidget(self.lesson_bar)
+        self.big_panel = BigPanel(self, self.docks, self.strip, self._middle, self.raise_dock, self.message_bar)
+        self._middle_layout.addWidget(self.big_panel.bar)
         self._loading = Label("")
         self._loading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._middle_layout.addWidget(self._loading, 1)
@@ -133,6 +136,7 @@ class MainWindow(QMainWindow):
         self._middle_layout.replaceWidget(self._loading, workspace)
         self._loading.deleteLater()
         self._middle_layout.setStretchFactor(workspace, 1)
+        self.big_panel.set_stage(workspace)
         self.message_bar.raise_()
 
     def add_docks(self, docks: list[Dock]) -> None:
@@ -284,6 +288,10 @@ class MainWindow(QMainWindow):
             dock.raise_()
         return dock is not None
 
+    def take_stage(self, name: str = "") -> None:
+        """Let a panel take the whole stage (the one in front without a name), or give it back."""
+        self.big_panel.toggle(name or self.front_dock() or next(each for each in self.docks if each not in SIDES))
+
     def front_dock(self) -> str:
         """Return the name of the tab that can be seen; "" when there is none."""
         for name, dock in self.docks.items():
@@ -358,6 +366,7 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Tell before the window goes."""
+        self.big_panel.give_back()
         self.closing.emit()
         super().closeEvent(event)
 

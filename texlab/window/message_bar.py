@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QToolButton, QWidget
 
 from texlab.widgets.plain import Label
@@ -44,6 +44,7 @@ class MessageBar(QFrame):
         self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
         self._ground = "#e9e9e6"
         self.hide()
+        self._below = parent
         if parent is not None:
             parent.installEventFilter(self)
 
@@ -72,18 +73,30 @@ class MessageBar(QFrame):
             f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; background: {self._ground}; }}"
         )
 
+    def lie_over(self, below: QWidget, within: QWidget) -> None:
+        """Lie over the upper edge of another widget from now on, ``within`` one that is around it."""
+        if self._below is not None:
+            self._below.removeEventFilter(self)
+        was_shown = self.isVisible()
+        self._below = below
+        self.setParent(within)
+        below.installEventFilter(self)
+        self._lie()
+        self.setVisible(was_shown)
+
     def _lie(self) -> None:
         """Lie over the upper edge of what is below: nothing there has to move."""
-        below = self.parentWidget()
-        if below is not None:
+        below, within = self._below, self.parentWidget()
+        if below is not None and within is not None:
+            corner = below.mapTo(within, QPoint(MARGIN, MARGIN)) if below is not within else QPoint(MARGIN, MARGIN)
             width = below.width() - 2 * MARGIN
             layout = self.layout()
             height = layout.heightForWidth(width) if layout is not None and layout.hasHeightForWidth() else -1
-            self.setGeometry(MARGIN, MARGIN, width, max(height, self.sizeHint().height()))
+            self.setGeometry(corner.x(), corner.y(), width, max(height, self.sizeHint().height()))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Follow the size of what is below."""
-        if event.type() == QEvent.Type.Resize and watched is self.parentWidget():
+        if event.type() == QEvent.Type.Resize and watched is self._below:
             self._lie()
         return super().eventFilter(watched, event)
 

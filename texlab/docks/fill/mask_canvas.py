@@ -1,84 +1,162 @@
-"""A picture on which a mask is painted: brush, rubber, rectangle, with undo."""
+"""A picture on which a soft mask is painted: brush, rubber, box, lasso, with undo per stroke."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QKeySequence, QMouseEvent
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QImage, QKeyEvent, QKeySequence, QMouseEvent, QPainter, QPolygonF
 
+from texlab.docks.fill.strokes import Box, marked_box, stroke_box, stroke_lasso, stroke_line, united
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plots import pg
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+    from PySide6.QtGui import QContextMenuEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.style.pictures import Picture
 
-Tool = Literal["brush", "rubber", "rectangle"]
+Tool = Literal["brush", "rubber", "rectangle", "lasso"]
 MOST_UNDO = 50
 DEFAULT_RADIUS = 8
-_WASH = np.array([255, 60, 120, 130], np.uint8)
+_WASH = QColor(255, 60, 120)
+_WASH_ALPHA = 150
+
+
+class WashItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """The mask as a wash over the picture; only what is seen is painted, at the screen's resolution."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.shares: NDArray[np.uint8] = np.zeros((1, 1), np.uint8)
+        self.outline: tuple[tuple[float, float], ...] = ()
+        self.setZValue(5)
+
+    def show_shares(self, shares: NDArray[np.uint8]) -> None:
+        """Show this mask, (H, W) uint8."""
+        if shares.shape != self.shares.shape:
+            self.prepareGeometryChange()
+        self.shares = shares
+        self.update()
+
+    def boundingRect(self) -> QRectF:
+        """Return what the mask covers."""
+        return QRectF(0, 0, self.shares.shape[1], self.shares.shape[0])
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        """Paint what is seen, skipping pixels that are smaller than those of the screen."""
+        view = self.getViewBox()
+        seen = self.boundingRect() if view is None else self.boundingRect().intersected(view.viewRect())
+        if seen.isEmpty():
+            return
+        scale = max(abs(painter.worldTransform().m11()), 1e-6)
+        step = max(1, int(1 / scale))
+        top, left = int(seen.top()) // step * step, int(seen.left()) // step * step
+        part = self.shares[top : int(seen.bottom()) + 1 : step, left : int(seen.right()) + 1 : step]
+        if part.any():
+            rows, columns = part.shape
+            colours = np.empty((rows, columns, 4), np.uint8)
+            colours[..., :3] = (_WASH.red(), _WASH.green(), _WASH.blue())
+            colours[..., 3] = part.astype(np.uint16) * _WASH_ALPHA // 255
+            image = QImage(colours.data, columns, rows, 4 * columns, QImage.Format.Format_RGBA8888)
+            painter.drawImage(QRectF(left, top, columns * step, rows * step), image)
+        if len(self.outline) > 1:
+            painter.setPen(pg.mkPen(_WASH, width=2))
+            painter.drawPolyline(QPolygonF([QPointF(column, row) for row, column in self.outline]))
 
 
 class MaskCanvas(PicturePane):
-    """Shows a picture with its mask; the left button paints, the wheel zooms.
+    """Shows a picture with its mask; the left button paints, the wheel zooms, the middle button moves.
 
-    ``changed()`` after every stroke. The arrow keys move a cursor and the space bar paints there.
+    ``changed()`` after every stroke; ``menu_wanted(place)`` for the menu of the right button. The arrow keys move
+    a cursor and the space bar paints there.
     """
 
     changed = Signal()
+    menu_wanted = Signal(object)
 
     def __init__(self, name: str, label: str, parent: QWidget | None = None) -> None:
         super().__init__(name, label)
         self.setParent(parent)
         self.tool: Tool = "brush"
         self.radius = DEFAULT_RADIUS
-        self.mask: NDArray[np.bool_] = np.zeros((1, 1), np.bool_)
-        self._undo: list[NDArray[np.bool_]] = []
-        self._redo: list[NDArray[np.bool_]] = []
-        self._last: tuple[float, float] | None = None
-        self._corner: tuple[float, float] | None = None
-        self._before: NDArray[np.bool_] | None = None
+        self.hardness = 1.0
+        self.shares: NDArray[np.uint8] = np.zeros((1, 1), np.uint8)
+        self._undo: list[tuple[Box, NDArray[np.uint8]]] = []
+        self._redo: list[tuple[Box, NDArray[np.uint8]]] = []
+        self._line: list[tuple[float, float]] = []
+        self._before: NDArray[np.uint8] | None = None
+        self._touched: Box | None = None
         self._cursor = (0, 0)
-        self._wash = pg.ImageItem(levels=None)
-        self._wash.setZValue(5)
-        self.view.addItem(self._wash)
+        self._wash = WashItem()
+        self.view.addItem(self._wash, ignoreBounds=True)
+        self._patches: list[Any] = []
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.viewport().installEventFilter(self)
 
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """What is marked at all, (H, W)."""
+        marked: NDArray[np.bool_] = self.shares > 0
+        return marked
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a stroke to take back."""
+        return bool(self._undo)
+
     def show_image(self, picture: Picture) -> None:
         """Paint on another picture; the mask is kept when the size is the same."""
+        self.show_patches(())
         self.set_picture(picture)
-        if self.mask.shape != picture.shape[:2]:
-            self.mask = np.zeros(picture.shape[:2], np.bool_)
-            self._undo.clear()
-            self._redo.clear()
+        if self.shares.shape != picture.shape[:2]:
+            self.set_shares(np.zeros(picture.shape[:2], np.uint8))
             self._cursor = (picture.shape[0] // 2, picture.shape[1] // 2)
         self._show_mask()
 
+    def show_patches(self, patches: tuple[tuple[Box, Picture], ...]) -> None:
+        """Lay these pictures, (h, w, 3 or 4) uint8, over their boxes of the picture."""
+        for item in self._patches:
+            self.view.removeItem(item)
+        self._patches = []
+        for (rows, columns), picture in patches:
+            item = pg.ImageItem(picture, levels=None, autoLevels=False)
+            item.setPos(columns.start, rows.start)
+            item.setZValue(2)
+            self.view.addItem(item, ignoreBounds=True)
+            self._patches.append(item)
+
     def set_mask(self, mask: NDArray[np.bool_]) -> None:
         """Take another mask of the same size, as one step."""
-        self._remember(self.mask.copy())
-        self.mask = mask.copy()
+        everything = slice(0, self.shares.shape[0]), slice(0, self.shares.shape[1])
+        self._remember(everything, self.shares)
+        self.shares = np.where(mask, np.uint8(255), np.uint8(0))
         self._show_mask()
         self.changed.emit()
 
+    def set_shares(self, shares: NDArray[np.uint8]) -> None:
+        """Take another mask, (H, W) uint8, and forget the strokes that led to the one before."""
+        self.shares = shares
+        self._undo.clear()
+        self._redo.clear()
+        self._show_mask()
+
     def undo(self) -> None:
         """Take the last stroke back."""
-        if self._undo:
-            self._redo.append(self.mask)
-            self.mask = self._undo.pop()
-            self._show_mask()
-            self.changed.emit()
+        self._step(self._undo, self._redo)
 
     def redo(self) -> None:
         """Paint the stroke again that was taken back last."""
-        if self._redo:
-            self._undo.append(self.mask)
-            self.mask = self._redo.pop()
+        self._step(self._redo, self._undo)
+
+    def _step(self, one: list[Any], other: list[Any]) -> None:
+        if one:
+            box, before = one.pop()
+            other.append((box, self.shares[box].copy()))
+            self.shares[box] = before
             self._show_mask()
             self.changed.emit()
 
@@ -100,6 +178,11 @@ class MaskCanvas(PicturePane):
                 return True
         return bool(super().eventFilter(watched, event))
 
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Ask for the menu."""
+        self.menu_wanted.emit(event.globalPos())
+        event.accept()
+
     def event(self, event: QEvent) -> bool:
         """Keep the keys of undo and redo: a stroke is taken back here before anything else is."""
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride and _stroke_key(event):
@@ -118,7 +201,7 @@ class MaskCanvas(PicturePane):
         }  # fmt: skip
         step = steps.get(Qt.Key(event.key()))
         if step is not None and self.picture is not None:
-            height, width = self.mask.shape
+            height, width = self.shares.shape
             row, column = self._cursor[0] + step[0] * self.radius, self._cursor[1] + step[1] * self.radius
             self._cursor = (min(max(row, 0), height - 1), min(max(column, 0), width - 1))
         elif event.key() == Qt.Key.Key_Space and self.picture is not None:
@@ -132,38 +215,49 @@ class MaskCanvas(PicturePane):
         return float(point.y()), float(point.x())
 
     def _begin(self, place: tuple[float, float]) -> None:
-        self._before = self.mask.copy()
-        self._last = self._corner = place
+        self._before = self.shares.copy()
+        self._touched = None
+        self._line = [place]
         self._go_on(place)
 
     def _go_on(self, place: tuple[float, float]) -> None:
         assert self._before is not None
-        assert self._corner is not None
-        assert self._last is not None
-        if self.tool == "rectangle":
-            self.mask = self._before.copy()
-            (top, bottom), (left, right) = (
-                sorted((round(a), round(b))) for a, b in zip(self._corner, place, strict=True)
-            )
-            self.mask[max(top, 0) : max(bottom, 0), max(left, 0) : max(right, 0)] = True
+        self._line.append(place)
+        if self.tool in ("brush", "rubber"):
+            *_, last, here = self._line
+            erase = self.tool == "rubber"
+            box = stroke_line(self.shares, last, here, self.radius, self.hardness, erase=erase)
+            self._touched = united(self._touched, box)
+        elif self.tool == "rectangle":
+            if self._touched is not None:
+                self.shares[self._touched] = self._before[self._touched]
+            self._touched = stroke_box(self.shares, self._line[0], place)
         else:
-            paint_line(self.mask, self._last, place, self.radius, self.tool == "brush")
-        self._last = place
+            self._wash.outline = tuple(self._line)
         self._show_mask()
 
     def _end(self) -> None:
         before, self._before = self._before, None
-        if before is not None and not np.array_equal(before, self.mask):
-            self._remember(before)
+        if self.tool == "lasso":
+            self._touched = stroke_lasso(self.shares, self._line)
+        self._wash.outline = ()
+        self._show_mask()
+        box = self._touched
+        if before is not None and box is not None and not np.array_equal(before[box], self.shares[box]):
+            self._remember(box, before)
             self.changed.emit()
 
-    def _remember(self, before: NDArray[np.bool_]) -> None:
-        self._undo = [*self._undo[1 - MOST_UNDO :], before]
+    def _remember(self, box: Box, before: NDArray[np.uint8]) -> None:
+        # Of a large picture only what the stroke has touched.
+        self._undo = [*self._undo[1 - MOST_UNDO :], (box, before[box].copy())]
         self._redo.clear()
 
     def _show_mask(self) -> None:
-        wash = np.where(self.mask[..., None], _WASH, np.uint8(0)).astype(np.uint8)
-        self._wash.setImage(wash, autoLevels=False, levels=None)
+        self._wash.show_shares(self.shares)
+
+    def marked_box(self) -> Box | None:
+        """Return the smallest box around what is marked, or None."""
+        return marked_box(self.shares)
 
 
 def _stroke_key(event: QKeyEvent) -> Literal["undo", "redo"] | None:
@@ -171,25 +265,3 @@ def _stroke_key(event: QKeyEvent) -> Literal["undo", "redo"] | None:
     if event.matches(QKeySequence.StandardKey.Undo):
         return "undo"
     return "redo" if event.matches(QKeySequence.StandardKey.Redo) else None
-
-
-def paint_line(
-    mask: NDArray[np.bool_], first: tuple[float, float], last: tuple[float, float], radius: int, value: bool
-) -> None:
-    """Set all pixels whose centre lies within ``radius`` of the line between two places (row, column)."""
-    height, width = mask.shape
-    top = max(0, int(min(first[0], last[0]) - radius - 1))
-    bottom = min(height, int(max(first[0], last[0]) + radius + 2))
-    left = max(0, int(min(first[1], last[1]) - radius - 1))
-    right = min(width, int(max(first[1], last[1]) + radius + 2))
-    if top >= bottom or left >= right:
-        return
-    rows = np.arange(top, bottom)[:, None] + 0.5 - first[0]
-    columns = np.arange(left, right)[None, :] + 0.5 - first[1]
-    along = (last[0] - first[0], last[1] - first[1])
-    length = along[0] ** 2 + along[1] ** 2
-    share: Any = 0.0
-    if length > 0:
-        share = np.clip((rows * along[0] + columns * along[1]) / length, 0, 1)
-    distance = (rows - share * along[0]) ** 2 + (columns - share * along[1]) ** 2
-    mask[top:bottom, left:right][distance <= radius**2] = value

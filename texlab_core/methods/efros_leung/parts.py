@@ -16,9 +16,9 @@ Box = tuple[slice, slice]
 
 CELL = 32
 """Holes that touch neighbouring cells of so many pixels are one hole."""
-WHOLE = 16
+WHOLE = 6
 """Holes of at most so many cells in either side are one part; larger ones are cut."""
-TILE = 8
+TILE = 4
 """Side in cells of the parts that they are cut into."""
 
 

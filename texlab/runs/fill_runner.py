@@ -1,0 +1,130 @@
+"""The newest fill of a whole picture at work: its run in a worker's thread, and what there is to see of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from texlab.runs.worker import Worker
+from texlab.state.filling import FillScene
+from texlab.style.pictures import Picture, to_picture
+from texlab_core.engine.run import run
+from texlab_core.methods.efros_leung.filling import filled_of
+from texlab_core.warming import Need
+
+if TYPE_CHECKING:
+    from texlab.runs.column_run import TaskLike
+    from texlab.runs.slots import Slots
+    from texlab.state.filling import FillPlan
+    from texlab_core.engine.steps import Step
+    from texlab_core.methods.efros_leung.filling import Filled
+    from texlab_core.warming import Warmth
+
+# Painting a large part takes a while; nobody sees more than a few of them.
+PREVIEW_S = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class FillProgress:
+    """How far a fill is, and what it looks like now and then."""
+
+    fraction: float
+    message: str
+    preview: Picture | None = None
+
+
+@dataclass
+class FillRun:
+    """A request for a worker: fills, and takes from the result what the plan wants of it."""
+
+    plan: FillPlan
+
+    def __call__(self, task: TaskLike) -> Filled:
+        """Fill to the end, reporting on the way."""
+        shown = time.perf_counter()
+
+        def watch(step: Step) -> None:
+            nonlocal shown
+            task.give_way()
+            if not task.due():
+                return
+            preview = None
+            if step.preview is not None and step.phase == "synthesis" and time.perf_counter() - shown > PREVIEW_S:
+                shown = time.perf_counter()
+                image = step.preview()
+                preview = to_picture(
+                    np.ascontiguousarray(image if self.plan.box is None else image[self.plan.box])
+                )
+            task.progress(FillProgress(step.fraction if step.phase == "synthesis" else 0.0, step.stage, preview))
+
+        result = run(self.plan.make_job(), watch, task.should_stop, threads=1)
+        return filled_of(result, self.plan.box)
+
+
+class FillRunner(QObject):
+    """Runs one fill, the newest instead of any other; ``changed()`` tells that ``scene`` is another one."""
+
+    changed = Signal()
+
+    def __init__(self, slots: Slots, warmth: Warmth, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.scene = FillScene()
+        self._slots = slots
+        self._warmth = warmth
+        # Most sessions fill nothing, and need no thread for it.
+        self._worker: Worker | None = None
+
+    def start(self, plan: FillPlan) -> None:
+        """Fill."""
+        self.scene = FillScene(plan, "running", 0.0, "waiting")
+        if self._worker is None:
+            self._worker = self._make_worker()
+        needs, warmth = [Need("efros-leung", channels) for channels in (1, 3)], self._warmth
+
+        def first(task: TaskLike) -> None:
+            for need in needs:
+                warmth.wait(need, task.should_stop)
+
+        self._worker.submit(FillRun(plan), first=first)
+        self.changed.emit()
+
+    def stop(self) -> None:
+        """Stop; the picture stays as it was."""
+        if self._worker is not None:
+            self._worker.cancel()
+
+    @property
+    def busy(self) -> bool:
+        """Whether it fills."""
+        return self.scene.status == "running"
+
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting."""
+        if self._worker is not None:
+            self._worker.leave()
+
+    def close(self) -> None:
+        """Stop the thread and wait for its end."""
+        if self._worker is not None:
+            self._worker.close()
+
+    def _make_worker(self) -> Worker:
+        worker = Worker("fill", self._slots, parent=self)
+        worker.progressed.connect(self._progressed)
+        worker.finished.connect(lambda found: self._show(status="finished", fraction=1.0, found=found))
+        worker.failed.connect(lambda sentence: self._show(status="failed", message=sentence, preview=None))
+        worker.cancelled.connect(lambda: self._show(status="stopped", preview=None))
+        return worker
+
+    def _progressed(self, report: FillProgress) -> None:
+        preview = self.scene.preview if report.preview is None else report.preview
+        self._show(fraction=report.fraction, message=report.message, preview=preview)
+
+    def _show(self, **changes: Any) -> None:
+        self.scene = dataclasses.replace(self.scene, **changes)
+        self.changed.emit()
