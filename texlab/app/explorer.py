@@ -274,6 +274,9 @@ class Explorer(QObject):
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)
         exemplar.scale_changed.connect(lambda scale: turn("scale", partial(controller.edit_scale, scale)))
+        exemplar.levels_changed.connect(
+            lambda levels, look: turn("levels", partial(controller.edit_levels, levels, look))
+        )
         exemplar.whole_wanted.connect(self._show_whole)
         exemplar.transparency_wanted.connect(self.opener.read_transparency)
         exemplar.hovered.connect(self.presenter.say_exemplar_pixel)

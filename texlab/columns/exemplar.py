@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QMenu, QSizePolicy, QToolButton
 
 from texlab.columns.cell import Cell
+from texlab.columns.exemplar_panel import ExemplarPanel
 from texlab.columns.foot import Foot
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
 from texlab.widgets.number_box import NumberBox
@@ -21,11 +22,12 @@ from texlab_core.images.unit_range import use_of_alpha
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from PySide6.QtGui import QResizeEvent
+    from PySide6.QtGui import QContextMenuEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.state.session import Sample
     from texlab.style.pictures import Picture
+    from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink
 
 MIN_CROP = 8
@@ -54,13 +56,14 @@ class ExemplarView(Cell):
 
     ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source;
     ``whole_wanted(whole)`` for all of a large picture reduced, or its middle at full size;
-    ``transparency_wanted(use)`` a key of ``TRANSPARENCY``.
+    ``transparency_wanted(use)`` a key of ``TRANSPARENCY``; ``levels_changed(levels or None, look_only)``.
     """
 
     crop_changed = Signal(object, bool)
     whole_wanted = Signal(bool)
     transparency_wanted = Signal(str)
     scale_changed = Signal(float)
+    levels_changed = Signal(object, bool)
     hovered = Signal(int, int)
     clicked = Signal(int, int)
     enlarged = Signal()
@@ -93,6 +96,14 @@ class ExemplarView(Cell):
         self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
         self.scale_box.setPrefix("×")
+        self.more = QToolButton()
+        self.more.setObjectName("exemplar-more")
+        self.more.setText("⋯")
+        self.more.setAutoRaise(True)
+        self.more.setAccessibleName("Crop in numbers, and levels")
+        set_tip(self.more, "The crop in numbers, work at 100 %, black, white and gamma")
+        self.more.clicked.connect(self.open_panel)
+        self.panel = ExemplarPanel(self)
         self.pane.setObjectName("pane-exemplar")
         self.pane.setAccessibleName("Exemplar")
         self.setAccessibleName("Exemplar with its crop and scale")
@@ -114,12 +125,16 @@ class ExemplarView(Cell):
         self.head.addWidget(self.choices)
         self.head.addWidget(self.crop_button)
         self.head.addWidget(self.scale_box)
+        self.head.addWidget(self.more)
         # The row is as high as those of the columns.
         button = QToolButton()
         button.setText("▶■⋯")
         self.lay_out(ShortBox(), button)
         self.crop_button.clicked.connect(self._toggle)
         self.scale_box.valueChanged.connect(self.scale_changed)
+        self.panel.crop_wanted.connect(lambda crop: self.crop_changed.emit(crop, True))
+        self.panel.scale_wanted.connect(self.scale_changed)
+        self.panel.levels_wanted.connect(self.levels_changed)
         self.pane.hovered.connect(self.hovered)
         self.pane.clicked.connect(self.clicked)
         self.pane.double_clicked.connect(self.enlarged)
@@ -171,6 +186,33 @@ class ExemplarView(Cell):
                 action.setCheckable(True)
                 action.setChecked(sample.alpha == key)
                 action.triggered.connect(lambda _=False, key=key: self.transparency_wanted.emit(key))
+
+    def open_panel(self) -> None:
+        """Let crop and levels be typed."""
+        self.panel.adjustSize()
+        self.panel.move(self.mapToGlobal(self.more.geometry().bottomLeft()))
+        self.panel.show()
+        self.panel.boxes["x"].setFocus()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with the exemplar."""
+        menu = QMenu(self)
+        menu.setObjectName("exemplar-menu")
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        for button in (
+            self.crop_button,
+            self.panel.powers_button,
+            self.panel.whole_button,
+            self.panel.full_button,
+        ):
+            action = menu.addAction(button.text())
+            action.setEnabled(button.isEnabled())
+            action.triggered.connect(button.click)
+        menu.addAction("Crop in numbers, levels ...").triggered.connect(self.open_panel)
+        if not self.choices.isHidden():
+            menu.addSeparator()
+            menu.addActions(self.choices.menu().actions())
+        menu.popup(event.globalPos())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Shorten the name to the room there is."""
@@ -278,3 +320,8 @@ class ExemplarView(Cell):
     def _settle(self) -> None:
         if self._crop is not None:
             self.crop_changed.emit(self._crop, True)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        super().set_theme(theme)
+        self.panel.set_theme(theme)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from texlab.columns.arrangement import Rows
     from texlab.state.scene import ColumnScene, Scene
     from texlab.style.theme import Theme
+    from texlab_core.engine.levels import Levels
 
 # The id that stands for the exemplar where a column could stand.
 EXEMPLAR = 0
@@ -60,6 +61,7 @@ class Workspace(QScrollArea):
         self._linked = False
         self._tiled = False
         self._surround = ""
+        self._look: Levels | None = None
         self._theme: Theme | None = None
         self._order: tuple[int, ...] = ()
         self._titled: tuple[ColumnScene, ...] = ()
@@ -121,6 +123,7 @@ class Workspace(QScrollArea):
         view = ColumnView(column_id, self._methods, self.link, self.grid)
         view.pane.set_tiled(self._tiled)
         view.pane.set_surround(self._surround)
+        view.pane.set_look(None if self._look is None else self._look.table())
         if self._theme is not None:
             self._paint(view)
         view.dragged.connect(self._drag)
@@ -266,6 +269,13 @@ class Workspace(QScrollArea):
         self._tiled = tiled
         for view in self.columns.values():
             view.pane.set_tiled(tiled)
+
+    def set_look(self, levels: Levels | None) -> None:
+        """Show results with these levels, which no method sees; the exemplar's picture has them already."""
+        if levels != self._look:
+            self._look = levels
+            for view in self.columns.values():
+                view.pane.set_look(None if levels is None else levels.table())
 
     def set_surround(self, colour: str) -> None:
         """Paint this around all pictures, as ``#rrggbb``; "" leaves it to the theme."""

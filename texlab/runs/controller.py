@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import Crop, ImageInput, Input
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.params import Params
 
 # What the analyses of earlier exemplars and parameters may take together.
@@ -210,6 +211,14 @@ class Controller(QObject):
         if sample is None or scale == sample.scale:
             return
         self.session.set_sample(rescaled(sample, scale), merge=merge)
+
+    def edit_levels(self, levels: Levels | None, look_only: bool, merge: object | None = None) -> None:
+        """Take other levels of the exemplar, for the methods too or for looking only."""
+        sample = self.session.state.sample
+        if sample is not None:
+            look_only = look_only and levels is not None
+            changed = dataclasses.replace(sample, levels=levels, look_only=look_only)
+            self.session.set_sample(changed, merge=merge)
 
     @contextlib.contextmanager
     def _drag(self, dragging: bool) -> Any:

@@ -11,9 +11,13 @@ from texlab.runs.worker import Worker
 from texlab.style.pictures import to_picture
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from texlab.state.session import Sample
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.levels import Levels
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -23,6 +27,12 @@ class Prepared:
     exemplar: ImageInput
     source_picture: Picture
     source_scaled: ImageInput
+    levels: Levels | None = None
+    """Those of the picture that is shown."""
+    histogram: NDArray[np.float64] | None = None
+    """Of what is used, before its levels; see :func:`histogram_of`."""
+    auto: Levels | None = None
+    """Levels that use the whole range."""
 
 
 class Preparation(QObject):
@@ -73,14 +83,20 @@ class Preparation(QObject):
 
 def prepare(sample: Sample, before: Prepared | None) -> Prepared:
     """Scale and crop a sample (in a worker's thread); the scaled source is taken over when it is the same."""
+    from texlab_core.engine.levels import Levels, histogram_of
     from texlab_core.images.exemplar import as_exemplar
 
     scaled = as_exemplar(sample.source, scale=sample.scale) if sample.scale != 1.0 else sample.source
-    if before is not None and before.source_scaled.sha256 == scaled.sha256:
+    same = before is not None and before.source_scaled.sha256 == scaled.sha256
+    if before is not None and same and before.levels == sample.levels:
         picture = before.source_picture
     else:
-        picture = to_picture(scaled.pixels)
-    exemplar = scaled
+        picture = to_picture(scaled.pixels if sample.levels is None else sample.levels.applied(scaled.pixels))
+    plain = scaled
     if sample.crop is not None:
-        exemplar = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop)
-    return Prepared(exemplar, picture, scaled)
+        plain = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop)
+    exemplar = plain
+    if sample.used_levels is not None:
+        exemplar = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop, levels=sample.used_levels)
+    histogram, auto = histogram_of(plain.pixels), Levels.auto(plain.pixels)
+    return Prepared(exemplar, picture, scaled, sample.levels, histogram, auto)

@@ -52,6 +52,32 @@ def reduced_words(sample: Sample) -> str:
     return f"shown at {100 * sample.scale:.3g} % so that it fits {COMFORTABLE_SIDE} px"
 
 
+def part_words(sample: Sample, size: tuple[int, int]) -> str:
+    """Return which part of a picture is used, whoever chose it; empty for all of it at its own size.
+
+    Parameters
+    ----------
+    sample
+        What is used.
+    size
+        Height and width of the scaled picture.
+    """
+    crop, said = sample.crop, []
+    if crop is not None and (crop.height, crop.width) != size:
+        said.append(f"at {crop.left}, {crop.top} of {size[1]} x {size[0]}")
+    if sample.scale != 1 and not is_reduced(sample):
+        height, width = sample.source.size
+        said.append(f"{width} x {height} scaled to {100 * sample.scale:.3g} %")
+    return ", ".join(said)
+
+
+def levels_words(sample: Sample) -> str:
+    """Return the levels and what they are for; empty without any."""
+    if sample.levels is None:
+        return ""
+    return f"levels {sample.levels.words}" + (", for looking only" if sample.look_only else "")
+
+
 def at_full_size(sample: Sample) -> Sample:
     """Return the other choice for a large picture: its middle, pixel by pixel, at most 256 x 256."""
     from texlab_core.engine.inputs import Crop
@@ -70,16 +96,17 @@ def as_a_whole(sample: Sample) -> Sample:
 
 def sample_as_used(image: ImageInput, path: str | None = None) -> Sample:
     """Return the sample whose exemplar is this image, pixel by pixel."""
-    if image.origin is not None and (image.origin.scale != 1.0 or image.origin.crop is not None):
+    origin = image.origin
+    if origin is not None and (origin.scale != 1.0 or origin.crop is not None or origin.levels is not None):
         whole = dataclasses.replace(
             image,
-            pixels=image.origin.pixels,
+            pixels=origin.pixels,
             sha256=image.sha256 + ":source",
             origin=None,
-            notes=image.origin.notes,
-            alpha=image.origin.alpha,
+            notes=origin.notes,
+            alpha=origin.alpha,
         )
-        return Sample(whole, image.origin.scale, image.origin.crop, path)
+        return Sample(whole, origin.scale, origin.crop, path, levels=origin.levels)
     return Sample(image, 1.0, None, path)
 
 

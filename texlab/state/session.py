@@ -16,6 +16,7 @@ from texlab_core.engine.sizes import default_size, size_text
 if TYPE_CHECKING:
     from texlab.state.scene import Past
     from texlab_core.engine.inputs import Crop, ImageInput, Input
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.params import Params
     from texlab_core.images.unit_range import Alpha
 
@@ -37,7 +38,8 @@ TRANSPARENCY: dict[str, tuple[Alpha, float]] = {
 class Sample:
     """The exemplar as chosen: a source image, scaled first, then cropped.
 
-    ``alpha`` is how its transparency was read: a key of :data:`TRANSPARENCY`.
+    ``alpha`` is how its transparency was read: a key of :data:`TRANSPARENCY`. ``levels`` come after the crop,
+    for the methods too or, with ``look_only``, for what is shown.
     """
 
     source: ImageInput
@@ -45,11 +47,18 @@ class Sample:
     crop: Crop | None = None
     path: str | None = None
     alpha: str = "white"
+    levels: Levels | None = None
+    look_only: bool = False
+
+    @property
+    def used_levels(self) -> Levels | None:
+        """The levels that the methods see."""
+        return None if self.look_only else self.levels
 
     @property
     def key(self) -> tuple[object, ...]:
         """What decides the pixels, and the transparency beside them."""
-        return (self.source.sha256, self.scale, self.crop, self.alpha == "keep")
+        return (self.source.sha256, self.scale, self.crop, self.alpha == "keep", self.levels, self.look_only)
 
 
 @dataclass(frozen=True)
@@ -282,6 +291,10 @@ class Session(QObject):
         sample = dataclasses.replace(sample, source=source)
         same_source = self.state.sample is not None and self.state.sample.source is sample.source
         text = "crop or scale" if same_source else f"exemplar {sample.source.name}"
+        before = self.state.sample
+        if same_source and before is not None:
+            changed = (before.levels, before.look_only) != (sample.levels, sample.look_only)
+            text = "levels" if changed else text
         if self.state.sample is not None and sample.path is not None and sample.alpha != self.state.sample.alpha:
             text = "transparency"
         self.apply(dataclasses.replace(self.state, sample=sample), text, merge=merge)

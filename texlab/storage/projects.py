@@ -105,6 +105,7 @@ def project_of(
         columns=columns,
         scale=1.0 if sample is None else sample.scale,
         crop=None if sample is None else sample.crop,
+        levels=None if sample is None else sample.used_levels,
         seed=state.seed,
         size=state.size,
         chosen=places.index(selected) if selected in places else 0,
@@ -149,7 +150,9 @@ def open_project(path: str) -> OpenedProject:
     from texlab_core.images.formats.reading import read_image
 
     project = read_project(path)
-    sample = None if project.exemplar is None else Sample(project.exemplar, project.scale, project.crop)
+    sample = None
+    if project.exemplar is not None:
+        sample = Sample(project.exemplar, project.scale, project.crop, levels=project.levels)
     columns, pictures, measures = [], {}, {}
     for number, each in enumerate(project.columns, 1):
         inputs = tuple(each.inputs.items())

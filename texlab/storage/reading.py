@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from texlab_core.documents.presets import Preset
     from texlab_core.documents.recipe import RecipeInput
+    from texlab_core.engine.levels import Levels
 
 DOCUMENT_SUFFIX = ".json"
 Source = str | bytes | Pasted | Kept
@@ -39,6 +40,8 @@ class Choice:
     crop: Crop | None = None
     scale: float | None = None
     alpha: str = "white"
+    levels: Levels | None = None
+    look_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -171,10 +174,23 @@ def last_exemplar(saved: Any) -> list[Choice]:
     whole = isinstance(crop, list) and len(crop) == 4 and all(type(side) is int for side in crop)
     box = Crop(*crop) if isinstance(crop, list) and whole else None
     factor = float(scale) if isinstance(scale, int | float) and 0 < scale <= 1 else None
+    levels = _saved_levels(sample.get("levels"))
+    look_only = levels is not None and sample.get("look_only") is True
+    made = partial(Choice, crop=box, scale=factor, levels=levels, look_only=look_only)
     if isinstance(path, str):
         alpha = sample.get("alpha")
-        return [Choice(path, box, factor, alpha if alpha in TRANSPARENCY else "white")]
+        return [made(path, alpha=alpha if alpha in TRANSPARENCY else "white")]
     if name in [entry.uri for entry in gallery()]:
-        return [Choice(str(name), box, factor)]
+        return [made(str(name))]
     kept = kept_exemplar(sample)
-    return [] if kept is None else [Choice(kept, box, factor)]
+    return [] if kept is None else [made(kept)]
+
+
+def _saved_levels(data: Any) -> Levels | None:
+    from texlab_core.engine.levels import Levels
+    from texlab_core.errors import ParamError
+
+    try:
+        return None if data is None else Levels.from_json(data)
+    except ParamError:
+        return None

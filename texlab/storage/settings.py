@@ -102,7 +102,7 @@ class Settings:
 
 def session_to_json(state: State, selected: int) -> dict[str, Any]:
     """Return the session as JSON: names, numbers and hashes, not pixels."""
-    sample = None
+    sample: dict[str, Any] | None = None
     if state.sample is not None:
         crop = state.sample.crop
         sample = {
@@ -112,6 +112,9 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
             "alpha": state.sample.alpha,
             "crop": None if crop is None else [crop.top, crop.left, crop.height, crop.width],
         }
+        if state.sample.levels is not None:
+            sample["levels"] = state.sample.levels.to_json()
+            sample["look_only"] = state.sample.look_only
         if has_no_home(state.sample):
             sample["kept"] = file_name(state.sample.source)
     places = [column.id for column in state.columns]

@@ -13,6 +13,7 @@ from texlab.widgets.pane import Pane
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
@@ -85,6 +86,7 @@ class ImagePane(Pane):
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         self._tiled = False
+        self._look: NDArray[np.uint8] | None = None
         super().__init__(link, parent)
         self._copies: list[Any] = []
         self._overlay: Any = None
@@ -112,18 +114,21 @@ class ImagePane(Pane):
     def set_picture(self, picture: Picture | None) -> None:
         """Show a picture, or nothing."""
         self._picture = picture
-        if picture is None:
-            self.item.clear()
-        else:
-            self.item.setImage(picture, autoLevels=False, levels=None)
-        for copy in self._copies:
-            if picture is None:
-                copy.clear()
+        shown = picture if picture is None or self._look is None else self._look[picture]
+        for item in (self.item, *self._copies):
+            if shown is None:
+                item.clear()
             else:
-                copy.setImage(picture, autoLevels=False, levels=None)
+                item.setImage(shown, autoLevels=False, levels=None)
         self._place_copies()
         self._choose_filter()
         self.painted.emit()
+
+    def set_look(self, table: NDArray[np.uint8] | None) -> None:
+        """Paint every gray level as another one, (256,) uint8; None paints them as they are."""
+        if table is not None or self._look is not None:
+            self._look = table
+            self.set_picture(self._picture)
 
     def set_surround(self, colour: str) -> None:
         """Paint this around the picture; "" leaves what the theme says."""

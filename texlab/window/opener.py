@@ -218,7 +218,12 @@ class Opener:
             return
         if opened.path is not None:
             self._settings.add_recent(opened.path)
-        sample = dataclasses.replace(sample_of(opened.image, opened.path), alpha=choice.alpha)
+        sample = dataclasses.replace(
+            sample_of(opened.image, opened.path),
+            alpha=choice.alpha,
+            levels=choice.levels,
+            look_only=choice.look_only,
+        )
         self._read = opened.image, choice
         if choice.scale is not None:
             sample = fitting(dataclasses.replace(sample, scale=choice.scale, crop=choice.crop))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.state.changes import reduced_words
+from texlab.state.changes import levels_words, part_words, reduced_words
 from texlab.style.pictures import describe_pixel
 from texlab_core.engine.late_maps import made_map
 from texlab_core.engine.registry import methods
@@ -147,9 +147,17 @@ class Presenter(QObject):
             height, width = prepared.exemplar.size
             kind = "gray" if prepared.exemplar.channels == 1 else "colour"
             said = reduced_words(sample)
-            parts = [*([said] if said else []), f"{width} x {height} {kind}", *sample.source.notes]
+            part = part_words(sample, prepared.source_scaled.size)
+            size = f"{width} x {height} {kind}"
+            said_first = [each for each in (said, levels_words(sample)) if each]
+            parts = [*said_first, f"{size} {part}" if part else size, *sample.source.notes]
         self._workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
         self._workspace.exemplar.offer(sample)
+        if prepared is not None:
+            panel = self._workspace.exemplar.panel
+            panel.show_choice(prepared.source_scaled.size, sample.scale, sample.crop, sample.source.size)
+            panel.show_levels(prepared.histogram, sample.levels, sample.look_only, prepared.auto)
+        self._workspace.set_look(sample.levels if sample.look_only else None)
         self._window.actions_by_name["crop"].setChecked(sample.crop is not None)
         if name != self._shown_exemplar:
             if self._shown_exemplar:

@@ -79,9 +79,12 @@ def _embed_image(given: ImageInput, limit: int, used: int) -> dict[str, Any]:
     if origin is not None and origin.taken is not None:
         scale, part = origin.taken
         entry["taken"] = {"scale": scale, "crop": _rectangle(part)}
+    if origin is not None and origin.levels is not None:
+        entry["levels"] = origin.levels.to_json()
     alpha = given.alpha
     # A picture that was used whole is the file that the user has.
     is_part = origin is not None and (origin.scale != 1 or origin.crop is not None or origin.taken is not None)
+    is_part = is_part or "levels" in entry
     if origin is not None and (packed := pack_pixels(origin.pixels, limit)) is not None:
         entry["source"] = packed
         alpha = origin.alpha
@@ -106,7 +109,7 @@ def kept_notes(inputs: Mapping[str, Mapping[str, Any]]) -> tuple[str, ...]:
             continue
         if "pixels" not in entry:
             notes.append(f"The {role} {entry['name']} is too large to be kept in the file: keep it beside.")
-        elif entry["scale"] != 1 or entry["crop"] is not None or "taken" in entry:
+        elif entry["scale"] != 1 or entry["crop"] is not None or "taken" in entry or "levels" in entry:
             width, height = entry["size"]["width"], entry["size"]["height"]
             notes.append(
                 f"The file keeps the {width} x {height} pixels that were used of {entry['name']}, whose whole is "

@@ -18,6 +18,7 @@ from texlab_core.documents.reading import parse_input
 from texlab_core.documents.recipe import known_measures, measures_from_json
 from texlab_core.engine.inputs import Crop, ImageInput, Input
 from texlab_core.engine.job import Job, check_seed, check_size
+from texlab_core.engine.levels import Levels
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import versions
@@ -53,7 +54,7 @@ _NAMES = re.compile(
     r"project\.json|inputs/[0-9a-f]{64}\.json|inputs/[0-9a-f]{64}-(?:source|pixels|alpha)\.png|results/\d{1,3}\.png"
 )
 _KEYS = ("format", "version", "versions", "exemplar", "scale", "crop", "seed", "size", "columns", "chosen",
-         "presets", "notes", "layout")  # fmt: skip
+         "presets", "notes", "layout", "levels")  # fmt: skip
 _COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "seed", "pinned", "result", "measures")
 _PIXELS = ("source", "pixels", "alpha")
 
@@ -107,6 +108,8 @@ class Project:
         The source image; scale and crop say what is used of it.
     scale, crop
         Scaled first, then cropped.
+    levels
+        Of what is used of the exemplar; None changes nothing.
     seed, size
         Of the columns that have none of their own.
     columns
@@ -131,6 +134,7 @@ class Project:
     presets: Sequence[Preset] = ()
     notes: str = ""
     layout: str = ""
+    levels: Levels | None = None
 
     def job(self, place: int) -> Job:
         """Return the job of a column; raises ``InputError`` when it cannot work."""
@@ -141,7 +145,7 @@ class Project:
         inputs = dict(column.inputs)
         method = find_method(column.method)
         if self.exemplar is not None and any(spec.name == "exemplar" for spec in method.inputs):
-            inputs["exemplar"] = as_exemplar(self.exemplar, scale=self.scale, crop=self.crop)
+            inputs["exemplar"] = as_exemplar(self.exemplar, scale=self.scale, crop=self.crop, levels=self.levels)
         size = column.size or default_size(self.size, method.dimensions)
         seed = self.seed if column.seed is None else column.seed
         return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)
@@ -198,7 +202,7 @@ def encode_project(project: Project) -> bytes:
         "presets": [each.to_json() for each in project.presets],
         "notes": project.notes,
         "layout": project.layout,
-    }
+    } | ({} if project.levels is None else {"levels": project.levels.to_json()})
     _check_room(inputs, results)
     return pack_archive({"project.json": strict_json.dumps(data).encode(), **results, **inputs})
 
@@ -285,6 +289,7 @@ class _Reader:
             presets=tuple(preset_from_json(each, what="a preset") for each in _list(data, "presets", MAX_PRESETS)),
             notes=_text(data, "notes", MAX_NOTE),
             layout=str(data["layout"]),
+            levels=None if data.get("levels") is None else Levels.from_json(data["levels"]),
         )
         _check_crop(made)
         return made

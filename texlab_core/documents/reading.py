@@ -13,6 +13,7 @@ from texlab_core.documents.embedding import MAX_DATA_DEPTH
 from texlab_core.documents.recipe import VERSION, Recipe, RecipeInput, measures_from_json
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import check_seed, check_size
+from texlab_core.engine.levels import Levels
 from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.registry import Method, find_method
 from texlab_core.engine.sizes import size_from_json
@@ -272,7 +273,8 @@ def parse_input(role: str, entry: dict[str, Any], kind: str) -> RecipeInput:
         if not isinstance(taken, dict):
             raise RecipeError(f"how the input {role} was taken must be an object, got {taken!r:.40}.")
         taken = _scale(taken.get("scale")), _crop(taken.get("crop"))
-    return RecipeInput(role, kind, name, sha256, shape, scale, crop, frozen_mapping(content), depth, taken)
+    levels = None if entry.get("levels") is None else Levels.from_json(entry["levels"])
+    return RecipeInput(role, kind, name, sha256, shape, scale, crop, frozen_mapping(content), depth, taken, levels)
 
 
 def _scale(value: Any) -> float:

@@ -19,6 +19,7 @@ from texlab_core.images.exemplar import as_exemplar, as_first_exemplar, take
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.images.exemplar import Source
@@ -52,6 +53,8 @@ class RecipeInput:
         Of an image: 8, 16 or "float", as its file had it.
     taken
         Scale and crop at which a picture was read that is too large to be kept whole.
+    levels
+        What was made of its values, after scale and crop; None: nothing.
     """
 
     role: str
@@ -64,6 +67,7 @@ class RecipeInput:
     content: Mapping[str, Any]
     depth: Depth = 8
     taken: tuple[float, Crop | None] | None = None
+    levels: Levels | None = None
 
     @property
     def is_embedded(self) -> bool:
@@ -94,8 +98,10 @@ class RecipeInput:
         if self.kind == "data":
             return DataInput(self.content["data"], self.name)
         try:
-            kind, crop, scale = (
-                ("source", self.crop, self.scale) if "source" in self.content else ("pixels", None, 1.0)
+            kind, crop, scale, levels = (
+                ("source", self.crop, self.scale, self.levels)
+                if "source" in self.content
+                else ("pixels", None, 1.0, None)
             )
             alpha = self.content.get("alpha")
             return take(
@@ -106,6 +112,7 @@ class RecipeInput:
                 depth=self.depth,
                 alpha=None if alpha is None else unpack_pixels(alpha, self.name),
                 taken=self.taken,
+                levels=levels,
             )
         except RecipeError:
             raise
@@ -139,9 +146,9 @@ class RecipeInput:
             image = reading()
             if image.sha256 == self.sha256:
                 return image
-            if self.scale != 1 or self.crop is not None:
+            if self.scale != 1 or self.crop is not None or self.levels is not None:
                 try:
-                    taken = as_exemplar(image, crop=self.crop, scale=self.scale)
+                    taken = as_exemplar(image, crop=self.crop, scale=self.scale, levels=self.levels)
                 except InputError:
                     taken = image
                 if taken.sha256 == self.sha256:

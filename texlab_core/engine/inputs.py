@@ -16,6 +16,7 @@ from texlab_core.files.wording import printable
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.steps import FloatImage
 
 
@@ -47,6 +48,8 @@ class Origin:
         What was converted when the source was read, one sentence each.
     taken
         Scale and crop at which a picture too large to be kept whole was read; ``pixels`` is what came out.
+    levels
+        What was made of the values, after scale and crop; None: nothing.
     """
 
     pixels: FloatImage
@@ -55,6 +58,7 @@ class Origin:
     alpha: FloatImage | None = None
     notes: tuple[str, ...] = ()
     taken: tuple[float, Crop | None] | None = None
+    levels: Levels | None = None
 
     def __repr__(self) -> str:
         """Return one short line."""

@@ -20,6 +20,7 @@ from texlab_core.images.unit_range import ALPHA, UnitRange
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.steps import FloatImage
     from texlab_core.images.formats.decoded import Depth
     from texlab_core.images.unit_range import Alpha
@@ -36,6 +37,7 @@ def as_exemplar(
     scale: float = 1.0,
     background: float = 1.0,
     alpha: Alpha = "background",
+    levels: Levels | None = None,
     should_stop: Callable[[], bool] | None = None,
 ) -> ImageInput:
     """Make an exemplar of an image, whatever it is.
@@ -58,6 +60,8 @@ def as_exemplar(
     alpha
         "background" lays transparent pixels over it; "ignore" uses the colours as they are; so does "keep", which
         has alpha beside the pixels (``ImageInput.alpha``).
+    levels
+        Black, white and gamma of what is used, after scale and crop; None leaves the values as they are.
     should_stop
         Asked while a large picture is read.
 
@@ -85,7 +89,7 @@ def as_exemplar(
     if alpha not in ALPHA:
         raise ImageError(f"The use of alpha must be {', '.join(ALPHA[:-1])} or {ALPHA[-1]}, got {alpha!r}.")
     if isinstance(source, ImageInput):
-        return _taken_anew(source, name, crop, scale)
+        return _taken_anew(source, name, crop, scale, levels)
     level = _check_level(background)
     _check_scale(scale, "The image" if name is None else name)
     large = scale < 1 or crop is not None
@@ -94,8 +98,10 @@ def as_exemplar(
     height, width = decoded.size
     if height * width <= MAX_PIXELS:
         pixels, opacity = _whole(image, decoded.values.shape, should_stop)
-        return take(pixels, name, crop, scale, tuple(image.notes), depth=decoded.depth, alpha=opacity)
-    return _read_reduced(image, decoded, name, crop, float(scale), should_stop)
+        return take(
+            pixels, name, crop, scale, tuple(image.notes), depth=decoded.depth, alpha=opacity, levels=levels
+        )
+    return _read_reduced(image, decoded, name, crop, float(scale), levels, should_stop)
 
 
 def as_first_exemplar(source: Source) -> ImageInput:
@@ -112,8 +118,10 @@ def as_first_exemplar(source: Source) -> ImageInput:
     return take(pixels, name, notes=tuple(image.notes), depth=decoded.depth)
 
 
-def _taken_anew(source: ImageInput, name: str | None, crop: Crop | None, scale: float) -> ImageInput:
-    if crop is None and scale == 1.0:
+def _taken_anew(
+    source: ImageInput, name: str | None, crop: Crop | None, scale: float, levels: Levels | None
+) -> ImageInput:
+    if crop is None and scale == 1.0 and (levels is None or levels.plain):
         return source if name is None else dataclasses.replace(source, name=name)
     name = source.name if name is None else name
     origin = source.origin or Origin(source.pixels, alpha=source.alpha, notes=source.notes)
@@ -126,6 +134,7 @@ def _taken_anew(source: ImageInput, name: str | None, crop: Crop | None, scale: 
         depth=source.depth,
         alpha=origin.alpha,
         taken=origin.taken,
+        levels=levels,
     )
 
 
@@ -135,6 +144,7 @@ def _read_reduced(
     name: str,
     crop: Crop | None,
     scale: float,
+    levels: Levels | None,
     should_stop: Callable[[], bool] | None,
 ) -> ImageInput:
     """Scale down or crop a picture of more than 64 megapixels."""
@@ -153,7 +163,17 @@ def _read_reduced(
     )
     said = list(notes)
     pixels = _gray_if_gray(pixels, said)
-    return take(pixels, name, None, 1.0, tuple(said), depth=decoded.depth, alpha=opacity, taken=(scale, crop))
+    return take(
+        pixels,
+        name,
+        None,
+        1.0,
+        tuple(said),
+        depth=decoded.depth,
+        alpha=opacity,
+        taken=(scale, crop),
+        levels=levels,
+    )
 
 
 def _whole(
@@ -264,8 +284,11 @@ def take(
     depth: Depth = 8,
     alpha: FloatImage | None = None,
     taken: tuple[float, Crop | None] | None = None,
+    levels: Levels | None = None,
 ) -> ImageInput:
     """Scale and crop pixels that are float32 in [0, 1] already, (H, W, 1 | 3), and the alpha beside them.
+
+    ``levels`` are of what is left then.
 
     Raises
     ------
@@ -287,11 +310,15 @@ def take(
     opacity = None if alpha is None else _sealed(alpha)
     if opacity is not None and opacity.shape != (*source.shape[:2], 1):
         raise ImageError(f"{name}: its transparency has another size than its colours.")
-    origin = Origin(source, float(scale), crop, opacity, notes, taken)
+    levels = None if levels is None or levels.plain else levels
+    origin = Origin(source, float(scale), crop, opacity, notes, taken, levels)
     said = notes
     whole = source.shape[0], source.shape[1]
     if (scaled := scaled_size(*whole, scale)) != whole:
         said = (*notes, reduction_note(whole, scaled, scale))
+    if levels is not None:
+        used = _sealed(levels.applied(used))
+        said = (*said, f"The levels are {levels.words}.")
     opacity = None if opacity is None else _part(opacity, crop, scale, name)
     return ImageInput(used, name, hash_arrays({"pixels": used}), origin, said, depth, opacity)
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import Crop, ImageInput, Input
+    from texlab_core.engine.levels import Levels
     from texlab_core.engine.registry import InputSpec, Method
 
 CODE_SUFFIX = ".msg.json"
@@ -33,25 +34,38 @@ class Reading:
     crop: Crop | None = None
     alpha: Literal["background", "ignore", "keep"] = "background"
     background: float = 1.0
+    levels: Levels | Literal["auto"] | None = None
 
     def read(self, source: str) -> ImageInput:
         """Return the exemplar; raises ``InputError``, and ``Cancelled`` after Ctrl-C."""
+        from texlab_core.engine.levels import Levels
         from texlab_core.images.exemplar import as_exemplar
 
-        return as_exemplar(
+        image = as_exemplar(
             source,
             scale=self.scale,
             crop=self.crop,
             alpha=self.alpha,
             background=self.background,
+            levels=self.levels if isinstance(self.levels, Levels) else None,
             should_stop=interrupted,
         )
+        if self.levels != "auto":
+            return image
+        whole = image.origin is not None and image.origin.taken is None
+        scale, crop = (self.scale, self.crop) if whole else (1.0, None)
+        return as_exemplar(image, scale=scale, crop=crop, levels=Levels.auto(image.pixels))
 
 
 def add_scale_options(parser: Parser, *, keeps: bool = False) -> None:
     """Add ``--scale`` and ``--crop``, and what belongs to every image; see :func:`add_alpha_options`."""
     parser.add_argument("--scale", metavar="S", help="reduce the image first, 0 < S <= 1")
     parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
+    parser.add_argument(
+        "--levels",
+        metavar="B,W,G|auto",
+        help="then make B black and W white (0 to 1), with the gamma G",
+    )
     add_alpha_options(parser, keeps=keeps)
 
 
@@ -90,7 +104,14 @@ def parse_reading(args: argparse.Namespace) -> Reading:
         None if crop is None else parse_crop(crop),
         args.alpha,
         background,
+        _levels(getattr(args, "levels", None)),
     )
+
+
+def _levels(text: str | None) -> Levels | Literal["auto"] | None:
+    from texlab_core.engine.levels import Levels
+
+    return None if text is None else Levels.parse(text) or "auto"
 
 
 @dataclass(frozen=True)
@@ -185,8 +206,10 @@ def load_inputs(
     first = "code" if is_code(source) else "exemplar"
     if first not in specs:
         raise InputError(f"{source} is a code of numbers, and {method.title} needs an image; say --method msg.")
-    if first == "code" and (reading.scale != 1.0 or reading.crop is not None):
-        raise InputError(f"{source} is a code of numbers, which can be neither scaled nor cropped.")
+    if first == "code" and (reading.scale != 1.0 or reading.crop is not None or reading.levels is not None):
+        raise InputError(
+            f"{source} is a code of numbers, which can be neither scaled nor cropped, and has no levels."
+        )
     if first in (others or {}):
         raise InputError(f"The input {first} is given twice.")
     return {first: load_input(Source(source, reading), specs[first]), **load_others(others or {}, method)}

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtCore import QPoint
 
-    from texlab.style.theme import Theme
 
 _TOOLS = [("Brush", "brush"), ("Rubber", "rubber"), ("Box", "rectangle"), ("Lasso", "lasso")]
 _TARGETS = [("Hole to fill", "mask"), ("Region to copy from", "region")]
