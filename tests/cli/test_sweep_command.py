@@ -72,7 +72,7 @@ def test_a_sheet_can_be_made_again_from_itself(call, tmp_path):
         "rounds=3",
     )
     (tmp_path / "sheet.png").rename(tmp_path / "first.png")
-    call("--recipe", tmp_path / "first.png")
+    call("--sweep", tmp_path / "first.png")
     assert (tmp_path / "sheet.png").read_bytes() == (tmp_path / "first.png").read_bytes()
 
 
@@ -148,8 +148,8 @@ def test_the_command_line_comes_before_recipe_and_preset(call, tmp_path):
             "megapixels, and at most 64",
         ),
         ((GRAVEL, "--method", "no-such", "--vary", "level=1"), "method: must be one of"),
-        (("--recipe", "no-such"), "There is no sweep called 'no-such'"),
-        (("--recipe", "de-bonet-fig-11", "--method", "stub"), "is for the method de-bonet, not for stub."),
+        (("--sweep", "no-such"), "There is no sweep called 'no-such'"),
+        (("--sweep", "de-bonet-fig-11", "--method", "stub"), "is for the method de-bonet, not for stub."),
         (("--preset", "no-such", "--vary", "level=1"), "There is no preset called"),
         ((GRAVEL, "--method", "stub", "--vary", "level=1", "--seed", "x"), "seed: must be a whole number"),
     ],

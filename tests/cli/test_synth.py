@@ -341,3 +341,26 @@ def test_every_method_can_be_redone(texlab: Texlab, name: str) -> None:
     one, other = (read(Path(each), each).values for each in (f"a{suffix}", f"b{suffix}"))
     np.testing.assert_array_equal(one, other)
     assert list(itertools.chain(Path().glob(".texlab*"), Path().glob("*.tmp"))) == []
+
+
+def test_levels_are_used_kept_and_made_again(texlab: Texlab) -> None:
+    from texlab_core.documents.reading import read_recipe
+    from texlab_core.engine.levels import Levels
+
+    values = np.random.default_rng(4).integers(2000, 9000, (24, 24, 1)) / np.float32(65535)
+    write_image(Path("dark.png"), values.astype(np.float32), bits=16)
+    base = ("synth", "dark.png", "--method", "pixels", "--size", "24x24")
+    for given, wanted in (("0.02,0.15,1.2", Levels(0.02, 0.15, 1.2)), ("auto", None)):
+        shown = texlab(*base, "--levels", given, "--out", "a.png")
+        assert (shown.code, shown.err) == (0, "")
+        assert "The levels are black 0.0" in shown.out
+        levels = read_recipe("a.png").inputs["exemplar"].levels
+        assert levels == wanted or (wanted is None and levels is not None and 0.02 < levels.black < 0.04)
+        assert texlab("redo", "a.png", "--out", "b.png").code == 0
+        first, second = (read_image(Path(name), name).values for name in ("a.png", "b.png"))
+        assert np.array_equal(first, second)
+        assert first.max() > 60000
+    refused = texlab(*base, "--levels", "0.5,0.2,1", "--out", "c.png")
+    assert refused.code == 2
+    assert refused.err.startswith("texlab: levels: must be black, white and gamma as in 0.1,0.8,1.2")
+    assert refused.err.count("\n") == 1

@@ -326,3 +326,24 @@ def test_colours_stay_within_the_palette_and_follow_brightness() -> None:
     np.testing.assert_allclose(image.mean(axis=(0, 1)), exemplar.pixels.mean(axis=(0, 1)), atol=0.03)
     gray, other = exemplar.pixels.mean(axis=2), image.mean(axis=2)
     assert np.abs(np.quantile(gray, [0.1, 0.5, 0.9]) - np.quantile(other, [0.1, 0.5, 0.9])).max() < 0.04
+
+
+def test_a_colour_texture_can_be_kept_to_the_numbers_of_a_gray_one() -> None:
+    from texlab_core.engine.job import Job
+    from texlab_core.engine.run import run
+    from texlab_core.images.exemplar import as_exemplar
+    from texlab_core.methods.spectral.method_msg import MsgParams
+    from texlab_core.transforms.luma import luma
+
+    colour = as_exemplar(np.random.default_rng(5).random((64, 64, 3), np.float32))
+    gray = as_exemplar(luma(colour.pixels)[..., None])
+    made = {
+        choice: run(Job(method="msg", inputs={"exemplar": colour}, params=MsgParams(colours=choice), seed=2))
+        for choice in ("keep", "gray")
+    }
+    plain = run(Job(method="msg", inputs={"exemplar": gray}, seed=2))
+    assert [made[choice].measures["numbers"] for choice in ("keep", "gray")] == [113, 69]
+    assert made["gray"].image.shape == (64, 64, 3)
+    assert np.array_equal(made["gray"].image[..., :1], plain.image)
+    assert "mean colour 3, axes of the colours 9, two curves of 16" in made["keep"].notes[-1]
+    assert made["gray"].notes == ()

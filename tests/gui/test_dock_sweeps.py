@@ -172,7 +172,7 @@ def test_controls_and_widths(bench):
 def test_the_keyboard_reaches_everything(qtbot, bench):
     dock = bench().dock
     seen = []
-    dock.recipe = dock.panel.recipe_box
+    dock.recipe = dock.panel.ready_box
     dock.start_button.setFocus()
     for _ in range(60):
         widget = QApplication.focusWidget()
@@ -180,7 +180,7 @@ def test_the_keyboard_reaches_everything(qtbot, bench):
         qtbot.keyClick(widget, Qt.Key.Key_Tab)
         if QApplication.focusWidget() is dock.start_button:
             break
-    for name in ("recipe", "across-knob", "across-from", "across-to", "across-count", "down-knob", "side", "zoom"):
+    for name in ("ready", "across-knob", "across-from", "across-to", "across-count", "down-knob", "side", "zoom"):
         assert f"sweeps-{name}" in seen
     assert "sweeps-sheet-canvas" in seen
 
@@ -590,7 +590,7 @@ def test_what_was_chosen_for_a_method_comes_back(qtbot, bench):
     wanted = panel.plan().axes
     here.session.select(2)
     qtbot.waitUntil(lambda: panel.across.knob.findText("iterations") >= 0)
-    assert panel.recipe_box.currentText() == "none for this method"
+    assert panel.ready_box.currentText() == "none for this method"
     here.session.select(1)
     qtbot.waitUntil(lambda: panel.across.knob.findText("grain") >= 0)
     assert panel.plan().axes == wanted == (Vary("level", (1.0, 1.5, 2.0, 2.5, 3.0)), Vary("border", ("reflect",)))
@@ -614,7 +614,7 @@ def test_with_cell_finds_a_column(bench, qtbot):
 def test_a_recipe_sets_knobs_and_offers_its_parameters(qtbot, bench):
     here = bench(Column(1, "stub", StubParams(rounds=3, grain=2.0)))
     dock = here.dock
-    choose(qtbot, dock.panel.recipe_box, "levels")
+    choose(qtbot, dock.panel.ready_box, "levels")
     plan = dock.panel.plan()
     assert plan.axes == RECIPE.axes
     assert plan.side == 64
@@ -628,16 +628,16 @@ def test_a_recipe_sets_knobs_and_offers_its_parameters(qtbot, bench):
     assert dock.sweep.jobs[1].params == StubParams(rounds=3, grain=2.0, level=1.0, exact=False)
     # Own values: no longer the recipe, but its parameters stay on offer.
     enter(qtbot, dock.panel.across.count, "2")
-    assert dock.panel.recipe_box.currentText() == "own choice"
+    assert dock.panel.ready_box.currentText() == "own choice"
     assert dock.panel.base_box.count() == 2
-    choose(qtbot, dock.panel.recipe_box, "levels")
+    choose(qtbot, dock.panel.ready_box, "levels")
     assert dock.panel.plan().axes == RECIPE.axes
 
 
 def test_own_choice_after_a_recipe(qtbot, bench):
     dock = bench().dock
-    choose(qtbot, dock.panel.recipe_box, "levels")
-    choose(qtbot, dock.panel.recipe_box, "own choice")
+    choose(qtbot, dock.panel.ready_box, "levels")
+    choose(qtbot, dock.panel.ready_box, "own choice")
     assert dock.panel.plan().params is None
     assert not dock.panel.base_box.isEnabled()
 
@@ -729,7 +729,7 @@ def test_captions_break_at_commas_then_at_spaces(bench):
 def test_the_sheet_is_saved_with_its_recipe(qtbot, bench, tmp_path):
     here = bench()
     dock = here.dock
-    choose(qtbot, dock.panel.recipe_box, "levels")
+    choose(qtbot, dock.panel.ready_box, "levels")
     complete(qtbot, dock)
     qtbot.mouseClick(dock.save_button, LEFT)
     dialog = dock.findChild(QFileDialog, "sweeps-save-dialog")

@@ -9,6 +9,7 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
+from texlab.columns.titles import titles
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
@@ -200,9 +201,10 @@ class ConvergenceDock(FramedDock):
         replace_items(self.curve, [(each.title, name) for name, each in own.items() if not each.reference])
         chosen = self.curve.currentData()
         # Another criterion has another unit: such curves do not belong into one pair of axes.
+        # Two columns of one method are told apart by what differs between them.
         overlaid = tuple(
-            (column.title, column.id == scene.selected_id, curves[chosen])
-            for column, curves in by_column
+            (title, column.id == scene.selected_id, curves[chosen])
+            for (column, curves), title in zip(by_column, titles(scene.columns), strict=True)
             if chosen in curves and _axes(curves[chosen]) == _axes(own[chosen])
         )
         details = selected.result.details if selected.result is not None else None
@@ -264,7 +266,7 @@ class ConvergenceDock(FramedDock):
             thick = name == answer.chosen
             self.all.curve(*_points(curve, floor), "exemplar" if thick else "muted", width=3 if thick else 1)
         self.all.set_log(floor is not None)
-        self.all.set_labels(shown.x_label, "")
+        self.all.set_labels(shown.x_label, shown.y_label)
         self.all.fit()
 
     def _write_legend(self) -> None:

@@ -120,6 +120,6 @@ def _words() -> Mapping[str, Sequence[str]]:
         "A,B,C": list(methods()),
         "IMAGE|gallery:NAME": textures,
         "NAME|FILE": presets,
-        "--recipe": [each.name for each in bundled_sweeps()],
+        "--sweep": [each.name for each in bundled_sweeps()],
         "PLAN|gallery:NAME": [BUNDLED + name for name in bundled_plans()],
     }

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from texlab.cli.parser import Parser
 
-HELP = "Save a texture as a code of 69 numbers (MSG)."
+HELP = "Save a texture as a code of 69 numbers, 113 in colour (MSG)."
 ORDER = 17
 READS = ("image",)
 WRITES = ".msg.json"
@@ -36,6 +36,7 @@ def configure(parser: Parser) -> None:
         default="uv",
         help="along which axes: of the frequency plane (default uv), or along and across the waves",
     )
+    parser.add_argument("--gray", action="store_true", help="the luma alone: 69 numbers also of a colour texture")
     add_scale_options(parser)
     add_json_option(parser)
 
@@ -49,16 +50,21 @@ def execute(args: argparse.Namespace) -> int:
     refuse_overwriting(out, args.image)
 
     from texlab_core.methods.spectral.codefile import code_to_json, write_code
-    from texlab_core.methods.spectral.encoding import encode
+    from texlab_core.methods.spectral.encoding import encode, gray_of
     from texlab_core.work.tasks import finish
 
     exemplar = reading.read(args.image)
-    code, _ = finish(encode(exemplar.pixels, args.bandwidths, args.axes))
+    pixels = gray_of(exemplar.pixels) if args.gray else exemplar.pixels
+    code, _ = finish(encode(pixels, args.bandwidths, args.axes))
     write_code(code, out, exemplar.name)
     if args.json:
         answer = {"out": str(out), "numbers": code.parameters, "code": code_to_json(code, exemplar.name)}
         print(json.dumps(answer, allow_nan=False))
     else:
-        beyond = "" if code.tone.colours is None else ", 44 of them for the colours, beyond the paper"
+        beyond = (
+            ""
+            if code.tone.colours is None
+            else ", 69 for gray and 44 for the colours (mean 3, axes 9, two curves of 16)"
+        )
         print(f"{out}: {exemplar.name} in {code.parameters} numbers{beyond}.")
     return 0

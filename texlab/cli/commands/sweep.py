@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -27,8 +28,6 @@ from texlab.cli.commands._sources import (
 from texlab.cli.terminal import interrupted, logged_quietly
 
 if TYPE_CHECKING:
-    import argparse
-
     from texlab.cli.parser import Parser
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.sheets.sweep import Cell, Sweep
@@ -45,7 +44,7 @@ a list:                               --vary border=reflect,periodic
 variations:                           --vary seed=1:12:12
 two parameters, across and down:      --vary alpha=0.1,0.2 --vary beta=0,1
 from one texture to another:          --method mixture --vary weight=0:1:5 --input second=wall.jpg
-a ready-made sweep, or an old sheet:  --recipe de-bonet-fig-11, --recipe SHEET.png
+a ready-made sweep, or an old sheet:  --sweep de-bonet-fig-11, --sweep SHEET.png
 """
 
 
@@ -57,8 +56,10 @@ def configure(parser: Parser) -> None:
     parser.add_argument(
         "--vary", action="append", default=[], metavar="NAME=FROM:TO:COUNT[:log]", help="see below"
     )
-    parser.add_argument("--out", required=True, metavar=SHEET, help="file to write; carries the recipe")
-    parser.add_argument("--recipe", metavar="NAME|FILE", help="start from a ready-made sweep, a file or a sheet")
+    parser.add_argument("--out", required=True, metavar=SHEET, help="file to write; carries the sweep")
+    parser.add_argument("--sweep", metavar="NAME|FILE", help="start from a ready-made sweep, a file or a sheet")
+    # As it was called in the first versions.
+    parser.add_argument("--recipe", dest="sweep", metavar="NAME|FILE", help=argparse.SUPPRESS)
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from the parameters of a preset")
     parser.add_argument("--size", metavar="WxH|WxHxD", help="of each result (default: the exemplar's)")
     parser.add_argument("--seed", metavar="N", help="the same seed gives the same bits (default 0)")
@@ -121,11 +122,11 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     from texlab_core.sheets.sweep import Vary
     from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
 
-    recipe = None if args.recipe is None else find_sweep(args.recipe)
+    recipe = None if args.sweep is None else find_sweep(args.sweep)
     preset = named_preset(args, args.method)
     chosen = args.method or (preset and preset.method) or (recipe and recipe.method)
     if not chosen:
-        raise InputError("A sweep needs a method: say --method ID, --preset NAME or --recipe NAME.")
+        raise InputError("A sweep needs a method: say --method ID, --preset NAME or --sweep NAME.")
     method = find_method(chosen)
     if recipe is not None and recipe.method != method.id:
         raise InputError(f"The sweep {recipe.name} is for the method {recipe.method}, not for {method.id}.")
@@ -134,7 +135,7 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     params = method.params.parse(parse_settings(args.set), params)
     axes = tuple(Vary.parse(text, method.params) for text in args.vary) or (recipe.axes if recipe else ())
     if not axes:
-        raise InputError("A sweep varies one or two knobs: say --vary NAME=FROM:TO:COUNT or --recipe NAME.")
+        raise InputError("A sweep varies one or two knobs: say --vary NAME=FROM:TO:COUNT or --sweep NAME.")
     base = SweepRecipe(name="sweep", method=method.id, axes=axes) if recipe is None else recipe
     changes: dict[str, Any] = {"axes": axes, "parameters": params.to_json()}
     if args.size is not None:

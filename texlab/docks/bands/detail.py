@@ -95,7 +95,7 @@ class BandDetail(QWidget):
         ticks = [(place, number(value)) for place, value in shown.scale.ticks()]
         self.bar.show_scale(band_table(shown.band), ticks)
         self.plot.show_comparison(shown.comparison, log=True)
-        self.plot.set_labels("", "share per bin")
+        self.plot.set_labels(shown.comparison.title, "share per bin")
         self.table.show_comparisons([shown.comparison])
         self._make_room()
 

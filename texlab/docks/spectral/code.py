@@ -134,7 +134,7 @@ class CodeDock(FramedDock):
 
     name = "code"
     title = "Code"
-    help = "The 69 numbers of MSG: drag or type them and the texture follows; save and open them."
+    help = "The numbers of MSG, 69 for gray: drag or type them and the texture follows; save and open them."
     order = 34
     empty = "The code appears as soon as there is an exemplar."
 
@@ -237,14 +237,18 @@ class CodeDock(FramedDock):
         self._key = "" if given is None else given.sha256
         self._exemplar_name = scene.exemplar.name
         exemplar, image = scene.exemplar.pixels, self.looked_at(scene)
+        gray = getattr(column.params, "colours", "keep") == "gray"
         measure: BandwidthMeasure = getattr(column.params, "bandwidths", "participation")
         axes: BandwidthAxes = getattr(column.params, "bandwidth_axes", "uv")
         column_id, recent = column.id, self._recent
 
         def compute(should_stop: Callable[[], bool]) -> CodeAnswer:
             from texlab_core.methods.spectral.codefile import code_from_json
+            from texlab_core.methods.spectral.encoding import gray_of
 
-            measured = recent.get((Same(exemplar), measure, axes), lambda: encoded(exemplar, measure, axes))
+            seen = gray_of(exemplar) if gray else exemplar
+            key = (Same(exemplar), measure, axes, gray)
+            measured = recent.get(key, lambda: encoded(seen, measure, axes))
             code = measured if given is None else code_from_json(given.data).code
             pixels = image.values()
             reached = None if pixels is None else values(encoded(pixels, measure), "energy")

@@ -119,7 +119,7 @@ class SpectrumDock(FramedDock):
         self.radial = Plot("spectrum-radial", "Power by frequency")
         self.radial.set_labels("cycles per pixel", "power")
         self.angular = Plot("spectrum-angular", "Power by orientation")
-        self.angular.set_labels("orientation in degrees", "")
+        self.angular.set_labels("orientation in degrees", "power")
         self.plots = QWidget()
         self.plots.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._plot_box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self.plots)

@@ -104,7 +104,7 @@ class SweepsDock(FramedDock):
         self.start_button = self.add_button("start", "Start", "Run every cell (Ctrl+Return)", self.start)
         self.stop_button = self.add_button("stop", "Stop", "Stop; the finished cells stay (Esc)", self.stop)
         self.save_button = self.add_button(
-            "save", "Save sheet ...", "Save the sheet as one PNG that carries its recipe", self.ask_save
+            "save", "Save sheet ...", "Save the sheet as one PNG that carries the sweep", self.ask_save
         )
         self.zoom = QSlider(Qt.Orientation.Horizontal)
         self.zoom.setRange(SMALLEST, LARGEST)
@@ -151,7 +151,7 @@ class SweepsDock(FramedDock):
         """Offer the ready-made sweeps."""
         method, recipes = answer
         if method == self.panel.method:
-            self.panel.show_recipes(recipes)
+            self.panel.show_sweeps(recipes)
 
     def _show_sweep(self, *, is_new: bool) -> None:
         shown, sweep = self.shown, self.shown.sweep
@@ -236,7 +236,7 @@ class SweepsDock(FramedDock):
         dialog = QFileDialog(self, "Save sheet")
         dialog.setObjectName("sweeps-save-dialog")
         dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setNameFilter("PNG with recipe (*.png)")
+        dialog.setNameFilter("PNG with the sweep (*.png)")
         dialog.setDefaultSuffix("png")
         dialog.selectFile(f"{Path(exemplar).stem}-{base.method}-{varied}.png")
         dialog.fileSelected.connect(self.save)
@@ -254,7 +254,7 @@ class SweepsDock(FramedDock):
             write_sheet(path, sweep, cells, name=plan.name, note=plan.note)
 
         def done(_: None) -> None:
-            self.intention.emit(Tell(f"Saved {path} with its recipe."))
+            self.intention.emit(Tell(f"Saved {path} with its sweep."))
 
         self.intention.emit(AskOnce("sheet", write, done))
 

@@ -41,7 +41,7 @@ class SweepPanel(QScrollArea):
         self._choices: dict[str, tuple[AxisChoice, AxisChoice]] = {}
         self._recipes: tuple[SweepRecipe, ...] = ()
         self._recipe: SweepRecipe | None = None
-        self.recipe_box, self.base_box, self.side_box = QComboBox(), QComboBox(), QComboBox()
+        self.ready_box, self.base_box, self.side_box = QComboBox(), QComboBox(), QComboBox()
         for side in SIDES:
             self.side_box.addItem(f"{side} x {side}", side)
         self.side_box.addItem("as the columns", None)
@@ -58,7 +58,7 @@ class SweepPanel(QScrollArea):
         layout.setContentsMargins(0, 0, 6, 0)
         layout.setSpacing(4)
         tip = "Ready-made sweeps of this method, the papers' figures among them"
-        self._add(layout, 0, "Recipe", self.recipe_box, f"{name}-recipe", tip)
+        self._add(layout, 0, "Sweep", self.ready_box, f"{name}-ready", tip)
         layout.addWidget(self.across, 1, 0, 1, 2)
         layout.addWidget(self.down, 2, 0, 1, 2)
         tip = "What all cells share: the parameters that are not varied"
@@ -71,7 +71,7 @@ class SweepPanel(QScrollArea):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setFixedWidth(WIDTH)
         self.setWidget(inside)
-        self.recipe_box.activated.connect(lambda _: self._choose_recipe())
+        self.ready_box.activated.connect(lambda _: self._choose_sweep())
         for axis in (self.across, self.down):
             axis.changed.connect(self._axis_changed)
 
@@ -96,7 +96,7 @@ class SweepPanel(QScrollArea):
         across, down = self._choices.get(method.id, (None, None))
         self.across.show_method(method.params, across)
         self.down.show_method(method.params, down)
-        self.show_recipes(())
+        self.show_sweeps(())
         self.tell("")
 
     @property
@@ -104,28 +104,28 @@ class SweepPanel(QScrollArea):
         """Id of the method whose knobs are offered, "" before the first."""
         return self._method
 
-    def show_recipes(self, recipes: tuple[SweepRecipe, ...]) -> None:
+    def show_sweeps(self, recipes: tuple[SweepRecipe, ...]) -> None:
         """Offer the method's ready-made sweeps; none is chosen."""
         self._recipes, self._recipe = recipes, None
-        self.recipe_box.clear()
-        self.recipe_box.addItem("own choice" if recipes else "none for this method")
+        self.ready_box.clear()
+        self.ready_box.addItem("own choice" if recipes else "none for this method")
         for place, recipe in enumerate(recipes):
-            self.recipe_box.addItem(recipe.name.removeprefix(f"{self._method}-").replace("-", " "))
-            self.recipe_box.setItemData(place + 1, tip_text(recipe.note), Qt.ItemDataRole.ToolTipRole)
-        self.recipe_box.setEnabled(bool(recipes))
+            self.ready_box.addItem(recipe.name.removeprefix(f"{self._method}-").replace("-", " "))
+            self.ready_box.setItemData(place + 1, tip_text(recipe.note), Qt.ItemDataRole.ToolTipRole)
+        self.ready_box.setEnabled(bool(recipes))
         self._offer_base()
 
     @property
-    def chosen_recipe(self) -> SweepRecipe | None:
+    def chosen_sweep(self) -> SweepRecipe | None:
         """The ready-made sweep that is shown as it is."""
-        place = self.recipe_box.currentIndex() - 1
+        place = self.ready_box.currentIndex() - 1
         return self._recipes[place] if 0 <= place < len(self._recipes) else None
 
     def plan(self) -> SweepPlan:
         """Return what was asked for; raises ``InputError`` when it makes no sense."""
         axes = tuple(axis for axis in (self.across.vary(), self.down.vary()) if axis is not None)
         plan = SweepPlan(axes, self.side_box.currentData(), self.base_box.currentData())
-        recipe = self.chosen_recipe
+        recipe = self.chosen_sweep
         return plan if recipe is None else dataclasses.replace(plan, name=recipe.name, note=recipe.note)
 
     def tell_of(self, plan: SweepPlan | None, sentence: str) -> None:
@@ -144,8 +144,8 @@ class SweepPanel(QScrollArea):
         if sentence:
             self.ensureWidgetVisible(self.error)
 
-    def _choose_recipe(self) -> None:
-        recipe = self.chosen_recipe
+    def _choose_sweep(self) -> None:
+        recipe = self.chosen_sweep
         # The editors tell of every change; these are not the user's.
         self._recipe = None
         if recipe is not None:
@@ -175,4 +175,4 @@ class SweepPanel(QScrollArea):
         self.tell("")
         if self._recipe is not None:
             # The values are the user's own from here on; the recipe's other parameters stay on offer.
-            self.recipe_box.setCurrentIndex(0)
+            self.ready_box.setCurrentIndex(0)

@@ -28,6 +28,14 @@ HISTOGRAM = Knob(
 _EXTRA = 256 - 16
 
 
+def gray_of(pixels: FloatImage) -> FloatImage:
+    """Return the luma of a picture, (H, W, 1); a gray one as it is."""
+    from texlab_core.transforms.luma import luma
+
+    gray: FloatImage = luma(pixels)[..., None]
+    return pixels if pixels.shape[2] == 1 else gray
+
+
 @dataclass(frozen=True, eq=False)
 class Finish:
     """The last step of a coded method: the histogram, the colours, the number of channels.

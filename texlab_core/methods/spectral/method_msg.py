@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from texlab_core.engine.inputs import DataInput, ImageInput
 from texlab_core.engine.params import Knob, Params
@@ -18,7 +18,7 @@ from texlab_core.methods.spectral.choices import (
     HistogramChoice,
     PhaseChoice,
 )
-from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish, encode
+from texlab_core.methods.spectral.encoding import HISTOGRAM, Finish, encode, gray_of
 from texlab_core.methods.spectral.told import ENERGY_ERROR, PARAMETERS
 
 if TYPE_CHECKING:
@@ -64,6 +64,19 @@ class MsgParams(Params):
             group="Analysis",
         ),
     ] = "uv"
+    colours: Annotated[
+        Literal["keep", "gray"],
+        Knob(
+            "What becomes of colours (of an exemplar; a code has its own).",
+            choices={
+                "keep": "44 numbers beyond the paper's 69: mean colour 3, axes of the colours 9, two curves of 16",
+                "gray": "none: the exemplar's luma in the paper's 69 numbers",
+            },
+            stage="analysis",
+            formerly="keep",
+            group="Analysis",
+        ),
+    ] = "keep"
     phase: Annotated[
         PhaseChoice,
         Knob(
@@ -131,7 +144,7 @@ def check(inputs: Inputs, params: MsgParams, size: tuple[int, int]) -> None:
 
         axes = code_from_json(given.data, what=f"the code {given.name}").code.axes
     elif "exemplar" not in inputs:
-        raise InputError("MSG needs an exemplar or a code of 69 numbers, and neither was given.")
+        raise InputError("MSG needs an exemplar or a code of numbers, and neither was given.")
     else:
         axes = params.bandwidth_axes
     if axes == "radial" and params.equations == "printed":
@@ -147,8 +160,9 @@ def analyze(inputs: Inputs, params: MsgParams) -> Generator[Step, None, MsgModel
     given, exemplar = inputs.get("code"), inputs.get("exemplar")
     masses = None
     if isinstance(exemplar, ImageInput):
-        code, masses = yield from encode(exemplar.pixels, params.bandwidths, params.bandwidth_axes)
-        channels = exemplar.channels
+        pixels = gray_of(exemplar.pixels) if params.colours == "gray" else exemplar.pixels
+        code, masses = yield from encode(pixels, params.bandwidths, params.bandwidth_axes)
+        channels = int(pixels.shape[2])
     if isinstance(given, DataInput):
         from texlab_core.methods.spectral.codefile import code_from_json
 
@@ -206,7 +220,10 @@ def _notes(code: MsgCode, plan: Design) -> tuple[str, ...]:
             f"{100 * plan.error:.2g} %."
         )
     if code.tone.colours is not None:
-        notes.append("The colours follow the first principal component, with 44 numbers beyond the paper's 69.")
+        notes.append(
+            "The colours follow the first principal component, with 44 numbers beyond the paper's 69: mean colour 3, "
+            "axes of the colours 9, two curves of 16."
+        )
     return tuple(notes)
 
 
@@ -221,7 +238,7 @@ register(
     Method(
         id="msg",
         title="MSG",
-        summary="A texture in 69 numbers, from which any amount of it is made.",
+        summary="A texture in 69 numbers (44 more for colours), from which any amount of it is made.",
         reference="Navarro & Portilla 1996, Robust method for texture synthesis-by-analysis based on a multiscale "
         "Gabor scheme",
         params=MsgParams,
@@ -236,7 +253,7 @@ register(
             InputSpec("exemplar", "The texture to measure.", required=False),
             InputSpec(
                 "code",
-                "A code of 69 numbers, instead of an exemplar.",
+                "A code of numbers, instead of an exemplar.",
                 kind="data",
                 required=False,
                 read=read_code_input,
