@@ -329,10 +329,6 @@ def test_colours_stay_within_the_palette_and_follow_brightness() -> None:
 
 
 def test_a_colour_texture_can_be_kept_to_the_numbers_of_a_gray_one() -> None:
-    from texlab_core.engine.job import Job
-    from texlab_core.engine.run import run
-    from texlab_core.images.exemplar import as_exemplar
-    from texlab_core.methods.spectral.method_msg import MsgParams
     from texlab_core.transforms.luma import luma
 
     colour = as_exemplar(np.random.default_rng(5).random((64, 64, 3), np.float32))
@@ -342,7 +338,7 @@ def test_a_colour_texture_can_be_kept_to_the_numbers_of_a_gray_one() -> None:
         for choice in ("keep", "gray")
     }
     plain = run(Job(method="msg", inputs={"exemplar": gray}, seed=2))
-    assert [made[choice].measures["numbers"] for choice in ("keep", "gray")] == [113, 69]
+    assert [made[choice].measures["parameters"] for choice in ("keep", "gray")] == [113, 69]
     assert made["gray"].image.shape == (64, 64, 3)
     assert np.array_equal(made["gray"].image[..., :1], plain.image)
     assert "mean colour 3, axes of the colours 9, two curves of 16" in made["keep"].notes[-1]

@@ -61,10 +61,7 @@ def execute(args: argparse.Namespace) -> int:
         answer = {"out": str(out), "numbers": code.parameters, "code": code_to_json(code, exemplar.name)}
         print(json.dumps(answer, allow_nan=False))
     else:
-        beyond = (
-            ""
-            if code.tone.colours is None
-            else ", 69 for gray and 44 for the colours (mean 3, axes 9, two curves of 16)"
-        )
+        colours = ", 69 for gray and 44 for the colours (mean 3, axes 9, two curves of 16)"
+        beyond = "" if code.tone.colours is None else colours
         print(f"{out}: {exemplar.name} in {code.parameters} numbers{beyond}.")
     return 0

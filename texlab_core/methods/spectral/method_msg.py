@@ -162,7 +162,7 @@ def analyze(inputs: Inputs, params: MsgParams) -> Generator[Step, None, MsgModel
     if isinstance(exemplar, ImageInput):
         pixels = gray_of(exemplar.pixels) if params.colours == "gray" else exemplar.pixels
         code, masses = yield from encode(pixels, params.bandwidths, params.bandwidth_axes)
-        channels = int(pixels.shape[2])
+        channels = exemplar.channels
     if isinstance(given, DataInput):
         from texlab_core.methods.spectral.codefile import code_from_json
 
@@ -221,8 +221,8 @@ def _notes(code: MsgCode, plan: Design) -> tuple[str, ...]:
         )
     if code.tone.colours is not None:
         notes.append(
-            "The colours follow the first principal component, with 44 numbers beyond the paper's 69: mean colour 3, "
-            "axes of the colours 9, two curves of 16."
+            "The colours follow the first principal component, with 44 numbers beyond the paper's 69: mean colour "
+            "3, axes of the colours 9, two curves of 16."
         )
     return tuple(notes)
 
