@@ -99,6 +99,22 @@ def test_a_source_goes_to_the_cluster_once_for_all_its_jobs() -> None:
     assert client.cancelled == []
 
 
+def test_a_kept_cluster_is_connected_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    place, connected = cluster.Cluster("tcp://127.0.0.1:1"), []
+
+    def connect(stack: Any) -> Client:
+        connected.append(Client())
+        return connected[-1]
+
+    monkeypatch.setattr(place, "_connect", connect)
+    with place.kept():
+        first, second = (list(place.run(orders(4))) for _ in range(2))
+    assert [each.value for each in first] == [each.value for each in second]
+    assert len(connected) == 1
+    assert len(list(place.run(orders(2)))) == 2
+    assert len(connected) == 2
+
+
 def test_sources_that_nobody_needs_any_more_are_let_go() -> None:
     place = cluster.Cluster("tcp://127.0.0.1:1")
     shipping = cluster._Shipping(Client(), place._count_workers)
