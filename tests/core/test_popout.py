@@ -105,6 +105,13 @@ def test_methods_that_make_other_things_are_refused() -> None:
     assert Setting(method="msg", params=find_method("msg").params()).name == "MSG"
 
 
+def test_names_can_be_told_apart() -> None:
+    params = find_method("tiling").params()
+    named = [Setting(method="tiling", params=params, name=name) for name in ("", "a", "", "a 2", "a")]
+    found = design(settings=tuple(named)).settings
+    assert [each.name for each in found] == ["Tiling", "a", "Tiling 2", "a 2", "a 3"]
+
+
 # Chance.
 
 

@@ -29,7 +29,7 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.method import DeBonetParams
-from texlab_core.sheets.tuning import SEARCH_SEEDS, _rounds, tune
+from texlab_core.sheets.tuning import SEARCH_SEEDS, _rounds, kind_of, tune
 from texlab_core.sheets.tuning_final import FINAL, SHORT_FINAL, Final, Tried, best_at_the_end, compared, promising
 from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
@@ -280,6 +280,18 @@ def test_what_is_promising_is_likely_or_gains_much() -> None:
     # A setting with the numbers of another one is no other one.
     assert len(promising([likely, tried(0.7, likely.kept, likely.gained)], START, None, 9)) == 1
     assert promising([broken], START, None, 3) == []
+    # Of those of a kind two go on as long as there are others.
+    family = [tried(0.1 + place / 100, (-4.5 - place / 100, -4.1), (0.33, 0.32)) for place in range(4)]
+    chosen = promising([*family, much, worse], START, None, 4, kind=lambda params: params.x < 0.15)
+    assert [each.params.x < 0.15 for each in chosen].count(True) == 2
+    assert len(promising(family, START, None, 4, kind=lambda _: 0)) == 4
+
+
+def test_settings_are_alike_that_differ_in_thresholds_only() -> None:
+    base = DeBonetParams()
+    assert kind_of(base) == kind_of(base.replace(alpha=0.3, beta=1.0))
+    assert kind_of(base) != kind_of(base.replace(patch=0.3))
+    assert kind_of(HillParams(x=0.1)) != kind_of(HillParams(x=0.2))
 
 
 def test_the_end_suggests_what_is_surest_or_has_most() -> None:

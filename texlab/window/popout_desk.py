@@ -100,15 +100,7 @@ class PopoutDesk:
         columns = [each for each in self._controller.session.state.columns if each.id in asked.columns]
         if not columns:
             raise InputError("Choose at least one method.")
-        settings, taken = [], set()
-        for each in columns:
-            name = each.name or find_method(each.method).title
-            place = 2
-            while name in taken:
-                name = f"{each.name or find_method(each.method).title} {place}"
-                place += 1
-            taken.add(name)
-            settings.append(Setting(method=each.method, params=each.params, name=name))
+        settings = [Setting(method=each.method, params=each.params, name=each.name) for each in columns]
         return Design(
             exemplar=exemplar,
             settings=tuple(settings),

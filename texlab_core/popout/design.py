@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -100,7 +100,7 @@ class Design:
     exemplar
         What pieces are cut from and pictures are made of.
     settings
-        1 .. 20 methods with parameters.
+        1 .. 20 methods with parameters; names that are the same get numbers.
     repeats
         Pictures of each, 1 .. 100, each from a seed of its own; 500 in all.
     size
@@ -130,6 +130,7 @@ class Design:
     def __post_init__(self) -> None:
         if not 1 <= len(self.settings) <= MAX_SETTINGS:
             raise InputError(f"A pop-out test takes 1 to {MAX_SETTINGS} methods, got {len(self.settings)}.")
+        object.__setattr__(self, "settings", named_apart(self.settings))
         if type(self.repeats) is not int or not 1 <= self.repeats <= MAX_REPEATS:
             raise ParamError("repeats", f"a whole number from 1 to {MAX_REPEATS}", self.repeats)
         if self.repeats * len(self.settings) > MAX_TRIALS:
@@ -234,6 +235,20 @@ def least_size(piece: tuple[int, int]) -> tuple[int, int]:
     """Return the smallest height and width, in the piece's ratio, at which guessing is right in half at most."""
     rows, columns = (math.ceil(n * (1 + math.sqrt(1 / MOST_CHANCE))) - 1 for n in piece)
     return rows, columns
+
+
+def named_apart(settings: Sequence[Setting]) -> tuple[Setting, ...]:
+    """Return settings whose names all differ: the second one of a name gets a 2 behind it, and so on."""
+    taken: set[str] = set()
+    found = []
+    for each in settings:
+        name, number = each.name, 1
+        while name in taken:
+            number += 1
+            name = f"{each.name} {number}"
+        taken.add(name)
+        found.append(replace(each, name=name))
+    return tuple(found)
 
 
 def settings_of(names: Sequence[str], params: Mapping[str, Params] | None = None) -> tuple[Setting, ...]:

@@ -27,7 +27,7 @@ from texlab_core.sheets.tuning_search import Measured, knob_rounds
 from texlab_core.sheets.tuning_thresholds import threshold_rounds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Mapping, Sequence
 
     from texlab_core.documents.presets import Preset
     from texlab_core.engine.params import Params
@@ -423,6 +423,12 @@ def _rounds(
     raise InputError(f"{method.title} has no thresholds: say which of its numbers are to be tuned (knobs).")
 
 
+def kind_of(params: Params) -> Hashable:
+    """Return what is left of a setting without its thresholds: what differs in them only is nearly the same."""
+    own = {"alpha", "beta", "thresholds"}
+    return tuple(value for name, value in vars(params).items() if name not in own)
+
+
 def _decide(
     search: _Search,
     start: Params,
@@ -434,11 +440,13 @@ def _decide(
     """Measure the most promising ones and the start again, on seeds that the search never saw, and choose."""
     bound = None if limit == "start" else float(limit)
     own = [search.tried(each.params, search.seeds) for each in search.found]
-    chosen = promising(own, search.tried(start, search.seeds), bound, final.candidates)
+    chosen = promising(own, search.tried(start, search.seeds), bound, final.candidates, kind_of)
     for count, most in ((final.first, final.finalists), (final.seeds, final.finalists)):
         search.means("fresh seeds", [start, *(each.params for each in chosen)], seeds[:count], 0)
         base = search.tried(start, seeds[:count])
-        chosen = promising([search.tried(each.params, seeds[:count]) for each in chosen], base, bound, most)
+        chosen = promising(
+            [search.tried(each.params, seeds[:count]) for each in chosen], base, bound, most, kind_of
+        )
     best = best_at_the_end(chosen, base, bound)
     if search.on_progress is not None:
         search.on_progress(1.0)

@@ -8,6 +8,7 @@ again the likely ones; only the seeds of the end decide.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 from statistics import NormalDist, fmean
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING
 from texlab_core.sheets.tuning_search import Measured
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Hashable, Sequence
 
     from texlab_core.engine.params import Params
 
@@ -44,6 +45,8 @@ class Final:
 
 
 FINAL = Final(candidates=14, first=5, finalists=5, seeds=16)
+# Of settings that differ in single thresholds only, so many are measured again.
+ALIKE = 2
 # Of small budgets.
 SHORT_FINAL = Final(candidates=4, first=3, finalists=4, seeds=3)
 FINAL_FROM = 300
@@ -157,13 +160,23 @@ def _chance(ahead: float, deviation: float) -> float:
     return NormalDist().cdf(ahead / deviation)
 
 
-def promising(found: Sequence[Tried], start: Tried, limit: float | None, count: int) -> list[Tried]:
+def promising(
+    found: Sequence[Tried],
+    start: Tried,
+    limit: float | None,
+    count: int,
+    kind: Callable[[Params], Hashable] = lambda params: params,
+    alike: int = ALIKE,
+) -> list[Tried]:
     """Return up to ``count`` settings that may well be better than the start.
 
     Parameters
     ----------
     found, start, limit
         As in :func:`compared`.
+    kind
+        What settings that are nearly the same have in common: at most ``alike`` of a kind are taken as long as
+        there are others, for they have the same luck.
 
     Returns
     -------
@@ -186,7 +199,14 @@ def promising(found: Sequence[Tried], start: Tried, limit: float | None, count: 
     chosen: list[int] = []
     for turn in zip(*orders, strict=True):
         chosen += [place for place in dict.fromkeys(turn) if place not in chosen]
-    return [usable[place] for place in chosen[:count]]
+    taken: Counter[Hashable] = Counter()
+    first: list[Tried] = []
+    rest: list[Tried] = []
+    for place in chosen:
+        own = kind(usable[place].params)
+        taken[own] += 1
+        (first if taken[own] <= alike else rest).append(usable[place])
+    return (first + rest)[:count]
 
 
 def best_at_the_end(found: Sequence[Tried], start: Tried, limit: float | None) -> Tried:
