@@ -18,6 +18,7 @@ from texlab.state.intentions import (
     EditInputs,
     EditParams,
     FillHoles,
+    GoToState,
     Intention,
     Open,
     OpenFailure,
@@ -171,6 +172,11 @@ def test_opening_telling_and_choosing(bench: Bench) -> None:
     bench.do(OpenFailure("coral", "de-bonet"))
     bench.do(OpenTab("histograms", (("log", True),)))
     assert bench.asked == [("coral", "de-bonet"), ("histograms", {"log": True})]
+    bench.session.set_seed(8)
+    bench.do(GoToState(0))
+    assert (bench.session.state.seed, bench.session.redo_text) == (5, "seed 8")
+    bench.do(GoToState(7))
+    assert bench.session.state.seed == 5
     bench.do(Tell("Good."))
     bench.do(Tell("Bad.", problem=True))
     assert bench.opened == ["gallery:oriented-zebra"]

@@ -98,6 +98,7 @@ class Controller(QObject):
         self.all_idle.connect(self._load_the_rest)
         session.changed.connect(self._session_changed)
         session.selected.connect(lambda _: self._refresh.start())
+        session.history_changed.connect(self._refresh.start)
 
     # What there is to show.
 
@@ -129,6 +130,7 @@ class Controller(QObject):
             self._lesson,
             self._source(),
             self._fills.scene,
+            self.session.history,
         )
 
     def _source(self) -> ImageInput | None:

@@ -197,6 +197,13 @@ class OpenFailure:
 
 
 @dataclass(frozen=True)
+class GoToState:
+    """Go back, or forward again, to a state of the session's history by its index; an index beyond it is none."""
+
+    index: int
+
+
+@dataclass(frozen=True)
 class OpenTab:
     """Bring a tab to the front, with its controls set by name as a user would."""
 
@@ -336,6 +343,7 @@ Intention = (
     | Open
     | OpenFailure
     | OpenTab
+    | GoToState
     | Tell
     | AskOnce
     | RunSweep

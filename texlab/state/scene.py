@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from texlab.state.filling import NO_FILL, FillScene
+from texlab.state.history import NO_HISTORY, History
 from texlab.state.lesson_scene import NO_LESSON, LessonScene
 from texlab.state.sweeps import NO_SWEEP, SweepScene
 from texlab.state.tuning import NO_TUNING, TuningScene
@@ -198,6 +199,8 @@ class Scene:
         The whole picture that the exemplar is taken from; None where that is not known.
     fill
         The newest fill of a whole picture.
+    history
+        The steps that undo and redo know.
     """
 
     exemplar: ImageInput | None = None
@@ -212,6 +215,7 @@ class Scene:
     lesson: LessonScene = NO_LESSON
     source: ImageInput | None = None
     fill: FillScene = NO_FILL
+    history: History = NO_HISTORY
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from texlab.state.history import History
 from texlab.state.sources import known_source
 from texlab_core.engine.job import DEFAULT_SIZE, MAX_SEED
 from texlab_core.engine.registry import find_method
@@ -167,6 +168,18 @@ class Session(QObject):
         self._entries = [_Entry(State(), "")]
         self._at = 0
         self._selected = 0
+        self._history = History()
+        self.history_changed.connect(self._note_history)
+
+    @property
+    def history(self) -> History:
+        """The names of all steps; the same object until one of them is another."""
+        return self._history
+
+    def _note_history(self) -> None:
+        texts = tuple(entry.text for entry in self._entries)
+        if (texts, self._at) != (self._history.texts, self._history.at):
+            self._history = History(texts, self._at)
 
     @property
     def state(self) -> State:
@@ -254,23 +267,24 @@ class Session(QObject):
 
     def undo(self) -> None:
         """Take the last step back; a column that comes back is chosen."""
-        if self._at > 0:
-            before, undone = self.state, self._entries[self._at]
-            self._at -= 1
-            self.finish_merge()
-            back = [column.id for column in self.state.columns if before.column(column.id) is None]
-            if back:
-                self._selected = undone.chosen if undone.chosen in back else back[0]
-                self.selected.emit(self._selected)
-            self._announce(before)
+        self.go_to(self._at - 1)
 
     def redo(self) -> None:
         """Do the step again that was taken back last."""
-        if self._at + 1 < len(self._entries):
-            before = self.state
-            self._at += 1
-            self.finish_merge()
-            self._announce(before)
+        self.go_to(self._at + 1)
+
+    def go_to(self, index: int) -> None:
+        """Go to another state of the history; a column that comes back on the way back is chosen."""
+        if not 0 <= index < len(self._entries) or index == self._at:
+            return
+        before, undone = self.state, self._entries[index + 1] if index < self._at else None
+        self._at = index
+        self.finish_merge()
+        back = [column.id for column in self.state.columns if before.column(column.id) is None]
+        if back and undone is not None:
+            self._selected = undone.chosen if undone.chosen in back else back[0]
+            self.selected.emit(self._selected)
+        self._announce(before)
 
     def _announce(self, before: State) -> None:
         if self.state.column(self._selected) is None:

@@ -15,6 +15,7 @@ from texlab.state.intentions import (
     EditParams,
     EditSize,
     FillHoles,
+    GoToState,
     GoToStep,
     LeaveLesson,
     NewLesson,
@@ -132,6 +133,8 @@ class Carrier:
                 self._open_source(source)
             case OpenFailure(name, beside):
                 self._open_failure(name, beside)
+            case GoToState(index):
+                session.go_to(index)
             case OpenTab(tab, settings):
                 self._open_tab(tab, dict(settings))
             case Tell(sentence, problem):
