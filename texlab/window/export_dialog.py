@@ -93,7 +93,7 @@ class ExportDialog(RunDialog):
         self.columns = QListWidget()
         self.columns.setFixedHeight(6 * self.fontMetrics().lineSpacing())
         self.seeds, self.sizes, self.out = QLineEdit(), QLineEdit(), QLineEdit()
-        self.seeds.setPlaceholderText("the window's; or 1..4,9")
+        self.seeds.setPlaceholderText("each column's own; or 1..4,9")
         self.sizes.setPlaceholderText("each column's own; or 512x512,1024x1024")
         self.format, self.bits, self.recipe = _box(FORMATS), _box(BITS), _box(RECIPES)
         self.quality = _number(0, 100, 0, "without loss")
