@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QListWidget, QListWidgetItem, QWidget
+from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QWidget
 
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label
+from texlab.widgets.tick_list import TickList
 from texlab.window.run_dialog import RunDialog, with_text
 from texlab_core.sheets.export_names import FIELDS, PATTERN
 
@@ -90,8 +91,7 @@ class ExportDialog(RunDialog):
         self._written = False
         self._sound = False
         self.kind = _box([text for _, text in KINDS])
-        self.columns = QListWidget()
-        self.columns.setFixedHeight(6 * self.fontMetrics().lineSpacing())
+        self.columns = TickList(6)
         self.seeds, self.sizes, self.out = QLineEdit(), QLineEdit(), QLineEdit()
         self.seeds.setPlaceholderText("each column's own; or 1..4,9")
         self.sizes.setPlaceholderText("each column's own; or 512x512,1024x1024")
@@ -181,30 +181,14 @@ class ExportDialog(RunDialog):
 
     def set_columns(self, columns: Sequence[tuple[int, str]], chosen: int) -> None:
         """Offer columns by id and title; the chosen one is ticked."""
-        self.columns.blockSignals(True)
-        self.columns.clear()
-        for column_id, title in columns:
-            item = QListWidgetItem(title, self.columns)
-            item.setData(Qt.ItemDataRole.UserRole, column_id)
-            item.setFlags(
-                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsUserCheckable | Qt.ItemFlag.ItemIsSelectable
-            )
-            ticked = Qt.CheckState.Checked if column_id == chosen else Qt.CheckState.Unchecked
-            item.setCheckState(ticked)
-        self.columns.blockSignals(False)
+        self.columns.offer(columns, (chosen,))
         self._edited()
 
     def request(self) -> ExportRequest:
         """Return what the fields say."""
-        items = [self.columns.item(row) for row in range(self.columns.count())]
-        ticked = tuple(
-            int(item.data(Qt.ItemDataRole.UserRole))
-            for item in items
-            if item.checkState() == Qt.CheckState.Checked
-        )
         return ExportRequest(
             kind=self._kind(),
-            columns=ticked,
+            columns=self.columns.ticked,
             seeds=self.seeds.text().strip(),
             sizes=self.sizes.text().strip(),
             out=self.out.text().strip(),

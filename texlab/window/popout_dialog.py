@@ -12,8 +12,6 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QFormLayout,
     QHBoxLayout,
-    QListWidget,
-    QListWidgetItem,
     QProgressBar,
     QPushButton,
     QStackedWidget,
@@ -24,6 +22,7 @@ from PySide6.QtWidgets import (
 from texlab.widgets.hidden_picture import HiddenPicture
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.tick_list import TickList
 from texlab.window.popout_review import PopoutReview
 from texlab_core.engine.job import MAX_SEED
 from texlab_core.popout.design import DEFAULT_REPEATS, MAX_REPEATS
@@ -125,8 +124,7 @@ class PopoutDialog(QDialog):
         fields = QWidget()
         fields.setMaximumWidth(WIDEST)
         form = QFormLayout(fields)
-        self.columns = QListWidget()
-        self.columns.setFixedHeight(7 * self.fontMetrics().lineSpacing())
+        self.columns = TickList(7)
         self.columns.itemChanged.connect(self._edited)
         self.share = QComboBox()
         for text, value in SHARES.items():
@@ -267,25 +265,14 @@ class PopoutDialog(QDialog):
 
     def set_columns(self, columns: Sequence[tuple[int, str]], seed: int) -> None:
         """Offer columns by id and title, all ticked, and a seed."""
-        self.columns.blockSignals(True)
-        self.columns.clear()
-        for column_id, title in columns:
-            item = QListWidgetItem(title, self.columns)
-            item.setData(Qt.ItemDataRole.UserRole, column_id)
-            item.setFlags(
-                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsUserCheckable | Qt.ItemFlag.ItemIsSelectable
-            )
-            item.setCheckState(Qt.CheckState.Checked)
-        self.columns.blockSignals(False)
+        self.columns.offer(columns, [column_id for column_id, _ in columns])
         self.seed.setValue(seed)
         self._edited()
 
     def request(self, *, figures: bool = False) -> PopoutRequest:
         """Return what the fields say."""
-        items = [self.columns.item(row) for row in range(self.columns.count())]
-        ticked = (each for each in items if each.checkState() == Qt.CheckState.Checked)
         return PopoutRequest(
-            columns=tuple(int(each.data(Qt.ItemDataRole.UserRole)) for each in ticked),
+            columns=self.columns.ticked,
             repeats=self.repeats.value(),
             share=float(self.share.currentData()),
             feather=self.feather.value(),
