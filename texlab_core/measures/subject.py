@@ -58,11 +58,15 @@ class PreparedCache:
             self._kept[key] = value, array_bytes(value) + 256
             while len(self._kept) > 1 and self.nbytes > self._max_bytes:
                 self._kept.popitem(last=False)
-            # From the newest: a hash that comes later than so many others is of an exemplar that is done with.
-            recent = list(dict.fromkeys(sha256 for _, sha256 in reversed(self._kept)))[: self._exemplars]
-            for each in [each for each in self._kept if each[1] not in recent]:
-                del self._kept[each]
+            if self._exemplars is not None:
+                self._forget_exemplars(self._exemplars)
         return value
+
+    def _forget_exemplars(self, count: int) -> None:
+        """Keep only what belongs to the exemplars that were used last."""
+        recent = set(list(dict.fromkeys(sha256 for _, sha256 in reversed(self._kept)))[:count])
+        for key in [key for key in self._kept if key[1] not in recent]:
+            del self._kept[key]
 
     @property
     def nbytes(self) -> int:
