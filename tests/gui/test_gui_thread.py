@@ -49,6 +49,8 @@ HEAVY_CODE = tuple(
 )
 # Small questions that the window may ask there.
 LIGHT = {"scaled_size", "describe_pixel", "named_with_suffix", "default_bits", "check_format", "reduction_note"}
+# At most 128 x 128 pixels of one that is shown.
+LIGHT |= {"thinned"}
 LIGHT |= {"can_hold_alpha", "result_bits", "carried_alpha", "reason"}
 HEAVY_CALLS = {"zlib", "_bz2", "_lzma", "cv2"}
 HEAVY_OF_QT = {"save", "load", "convertToFormat", "scaled"}

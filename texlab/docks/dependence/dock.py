@@ -13,7 +13,7 @@ from texlab.docks.dependence.panels import panels
 from texlab.docks.dependence.ready import ASKING, choices, opening
 from texlab.docks.frame import FramedDock, LookedAt, replace_items, shown_image
 from texlab.state.intentions import Pin
-from texlab.widgets.plain import Label
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.dependence import FARTHEST, MOST_LEVEL, Pair
 
@@ -199,6 +199,7 @@ class DependenceDock(FramedDock):
             parts = ", ".join(f"{each.title} {each.share:.2%}" for each in answer if each.share is not None)
             said = f"The chosen cells hold: {parts}. {said}"
         self.pair_name.setText(said)
+        set_tip(self.pair_name, said)
 
     def _redraw(self) -> None:
         shown: tuple[Panel, ...] = self.answer or ()

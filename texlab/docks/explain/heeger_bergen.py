@@ -214,7 +214,7 @@ class HeegerBergenView(ExplanationView):
         layout.setContentsMargins(6, 0, 6, 4)
         layout.setSpacing(2)
         layout.addLayout(panes, 1)
-        self.dependence = QPushButton("See what the others knew")
+        self.dependence = QPushButton("Show the dependence")
         self.dependence.setObjectName("explain-dependence")
         self.dependence.setAccessibleName("Open the tab Dependence for the chosen subband")
         set_tip(
