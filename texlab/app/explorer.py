@@ -32,6 +32,7 @@ from texlab.window.gallery_thumbnails import Thumbnails
 from texlab.window.handlers import Handlers
 from texlab.window.help_desk import HelpDesk
 from texlab.window.opener import Opener
+from texlab.window.own_layouts import OwnLayouts
 from texlab.window.presenter import Presenter
 from texlab.window.stage_settings import StageSettings
 from texlab.window.tab_pictures import TabPictures
@@ -125,6 +126,8 @@ class Explorer(QObject):
         window.set_workspace(self.workspace)
         self.stage = StageSettings(window, self.workspace, settings)
         window.add_docks(self.docks)
+        self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted)
+        window.actions_by_name["own-layouts"].triggered.connect(lambda _: self.own_layouts.ask())
         self.presenter.show_theme(themes.theme)
         self._connect()
         self.thumbnails = Thumbnails(window.gallery, self)

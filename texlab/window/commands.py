@@ -113,6 +113,7 @@ COMMANDS = (
     Command("&View", "layout-explore", "Layout &Explore", "Ctrl+1", "Everything in sight", separator=True),
     Command("&View", "layout-teach", "Layout Teac&h", "Ctrl+2", "Large: the images and one dock, for a projector"),
     Command("&View", "layout-tune", "Layout T&une", "Ctrl+3", "Wide parameters, no gallery"),
+    Command("&View", "own-layouts", "O&wn layouts ...", "", "Keep how panels and tabs are, or go back to that"),
     Command("&Help", "help", "&Help", "F1", "Explain the chosen method"),
     Command("&Help", "help-window", "The &window", "", "Explain the window"),
     Command("&Help", "shortcuts", "&Keyboard", "", "List the keys"),

@@ -66,7 +66,11 @@ class ToolBar(QToolBar):
         spring = QWidget()
         spring.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.addWidget(spring)
-        self.addWidget(_layout_button(actions))
+        self.layout_menu = QMenu(self)
+        self.layout_menu.addActions([actions[f"layout-{name}"] for name in LAYOUTS])
+        self.layout_menu.addSeparator()
+        self.layout_menu.addAction(actions["own-layouts"])
+        self.addWidget(_layout_button(self.layout_menu))
         self.addAction(actions["help"])
         for action in self.actions():
             button = self.widgetForAction(action)
@@ -97,13 +101,11 @@ def _box(name: str, low: int, high: int, value: int, tip: str) -> WholeBox:
     return box
 
 
-def _layout_button(actions: Mapping[str, QAction]) -> QToolButton:
+def _layout_button(menu: QMenu) -> QToolButton:
     button = QToolButton()
     button.setObjectName("layout-button")
     button.setText("Layout")
     set_tip(button, "Arrange the panels for exploring, teaching or tuning")
     button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-    menu = QMenu(button)
-    menu.addActions([actions[f"layout-{name}"] for name in LAYOUTS])
     button.setMenu(menu)
     return button
