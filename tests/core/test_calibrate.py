@@ -10,6 +10,7 @@ import pytest
 
 from texlab_core.errors import InputError
 from texlab_core.measures import calibrate
+from texlab_core.measures.discriminability import SCALE, SHRINKAGE
 from texlab_core.measures.limits import LIMITS, Limit
 from texlab_core.measures.registry import find_measure
 
@@ -61,6 +62,19 @@ def test_labelled_results_come_in_the_right_order() -> None:
     assert laid[method == "de-bonet"].min() > 0.6 > 0.4 > laid[method == "heeger-bergen"].max()
     seen = found["visual-difference"]
     assert seen[method == "de-bonet"].max() < seen[method == "heeger-bergen"].min()
+
+
+def test_d_with_its_own_constant_is_the_measures_but_for_the_scale() -> None:
+    labels = calibrate.read_labels(LABELS)[:4]
+    ids = ("discriminability", "magnitude-difference", "block-distance")
+    values = calibrate.measure_labels(LABELS, labels, ids)
+    found = calibrate.measure_diagonals(LABELS, labels)
+    assert found.shape == (len(calibrate.DIAGONALS), 4)
+    own = found[calibrate.DIAGONALS.index(SHRINKAGE[2])]
+    b = np.exp((own - np.log(values["magnitude-difference"] + 0.001)) / 2) - 0.05
+    np.testing.assert_allclose(b * SCALE, values["block-distance"], rtol=1e-6)
+    # A smaller constant makes distances larger: less is added to the covariance.
+    assert (np.diff(found, axis=0) < 0).all()
 
 
 def test_the_table_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -163,7 +163,9 @@ def test_a_cut_is_where_copies_meet_though_other_lines_jump_more() -> None:
     assert cut is not None
     assert (cut.axis, cut.line) == ("row", 95)
     assert cut.value == pytest.approx(find_measure("cuts").of(subject))
+    assert find_measure("cuts-at-sides").of(subject) == cut.value
     assert largest_cut_between(Subject.of_images(exemplar, exemplar)) is None
+    assert find_measure("cuts-at-sides").of(Subject.of_images(exemplar, exemplar)) is None
 
 
 def test_the_exemplar_itself_is_no_failure() -> None:

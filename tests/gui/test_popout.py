@@ -158,6 +158,18 @@ def test_the_picture_is_painted_as_it_is_and_nothing_else(qtbot: Any, stage: Any
     assert not stage.hasMouseTracking()
 
 
+@pytest.mark.parametrize(("ratio", "enlarged"), [(1.0, 3.0), (1.5, 4 / 1.5), (2.0, 3.0), (1.25, 4 / 1.25)])
+def test_every_pixel_is_equally_wide_on_any_screen(
+    stage: Any, monkeypatch: pytest.MonkeyPatch, ratio: float, enlarged: float
+) -> None:
+    monkeypatch.setattr(type(stage), "devicePixelRatioF", lambda _: ratio)
+    stage.show_picture(picture())
+    assert stage.area().width() == pytest.approx(120 * enlarged)
+    # What is larger than the field is reduced to fit.
+    stage.show_picture(picture(1000, 1200))
+    assert stage.area().height() == pytest.approx(min(330, 1000 * 430 / 1200))
+
+
 # The dialog, fed with plain data.
 
 

@@ -70,13 +70,14 @@ class HiddenPicture(QWidget):
         self.update()
 
     def area(self) -> QRectF:
-        """Return where the picture is: enlarged by whole numbers, or reduced to fit, in the middle."""
+        """Return where the picture is, in the middle: whole pixels of the screen for each pixel, or reduced."""
         if self._picture is None:
             return QRectF()
         height, width = self._picture.shape[:2]
         scale = min(self.width() / width, self.height() / height)
-        # Enlarged by halves, some pixels would be wider than others.
-        scale = float(int(scale)) if scale >= 1 else scale
+        # Enlarged by parts of a screen's pixel, some pixels would be wider than others.
+        whole = int(scale * self.devicePixelRatioF())
+        scale = whole / self.devicePixelRatioF() if whole >= 1 else scale
         area = QRectF(0, 0, width * scale, height * scale)
         area.moveTo((self.width() - area.width()) // 2, (self.height() - area.height()) // 2)
         return area

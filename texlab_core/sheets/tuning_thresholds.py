@@ -26,6 +26,7 @@ FEW_ALPHAS = (0.05, 0.15, 0.3)
 PATCHES = (0.25, 0.3, 0.36, 0.39, 0.42, 0.48)
 PLACES = (1, 3, 8)
 PATCH_ALPHAS = (0.05, 0.15)
+FEW_PLACES = 3
 # What may make the conditions fit this exemplar better, whatever the layout is.
 CONDITIONS: tuple[Mapping[str, Any], ...] = (
     {"beta": 0.5},
@@ -79,13 +80,12 @@ def threshold_rounds(
     if patched:
         found = cast("DeBonetParams", best.params)
         sided = [first] if found.coarsest_side == first.coarsest_side else [first, found]
-        alphas = tuple(sorted({*PATCH_ALPHAS, found.alpha}))
         patches = [
-            each.replace(patch=width, places=places, alpha=a)
+            each.replace(patch=width, places=places, **changes)
             for each in sided
             for width in PATCHES
             for places in PLACES
-            for a in (alphas if each is sided[0] else PATCH_ALPHAS[:1])
+            for changes in _with_patches(found.alpha, places)
         ]
         known += yield "patches", list(patches)
         best = best_of(known, limit, best)
@@ -131,6 +131,12 @@ def threshold_rounds(
 
 def _layout(params: Params) -> tuple[object, ...]:
     return tuple(getattr(params, name) for name in LAYOUT)
+
+
+def _with_patches(alpha: float, places: int) -> list[dict[str, Any]]:
+    """Return what goes with each width of patches: alphas, and the border that makes the sides of patches fit."""
+    alphas = sorted({*PATCH_ALPHAS, alpha}) if places == FEW_PLACES else [PATCH_ALPHAS[-1]]
+    return [*({"alpha": each} for each in alphas), {"border": "smooth"}]
 
 
 def _conditions(params: DeBonetParams) -> list[DeBonetParams]:
