@@ -21,9 +21,11 @@ from texlab.cli.terminal import complain, interrupted, logged_quietly, orderly_i
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
+    from types import FrameType
 
     from tests.cli.conftest import Texlab
 
+PATIENCE_S = 240
 posix = pytest.mark.skipif(os.name == "nt", reason="signals and devices of Unix")
 
 
@@ -114,6 +116,56 @@ def test_whoever_asks_learns_of_an_interruption(
         within(work)
     assert seen == [False, True]
     assert not interrupted()
+
+
+@posix
+def test_no_press_is_lost_wherever_it_comes(press: Callable[[], None], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Press before every single instruction of the code that takes, tells and raises it."""
+    monkeypatch.setattr(terminal, "_PATIENCE_S", 1000)
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGALRM)}
+    hook, tracer = sys.unraisablehook, sys.gettrace()
+    lost, unheard, passed = [], [], 0
+
+    def within_at(place: int) -> tuple[bool, list[bool]]:
+        nonlocal passed
+        passed, asked = 0, []
+
+        def look(frame: FrameType, event: str, _: object) -> object:
+            nonlocal passed
+            if frame.f_code.co_filename != terminal.__file__:
+                return None
+            frame.f_trace_opcodes = True
+            if event == "opcode":
+                passed += 1
+                if passed == place:
+                    press()
+            return look
+
+        sys.settrace(look)  # type: ignore[arg-type]  # what mypy knows of it is not all that it takes
+        try:
+            within(lambda: asked.extend(interrupted() for _ in range(3)))
+        except KeyboardInterrupt:
+            return True, asked
+        finally:
+            sys.settrace(tracer)
+            sys.unraisablehook = hook
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+        return False, asked
+
+    within_at(0)
+    instructions = passed
+    assert instructions > 100
+    for place in range(1, instructions + 1):
+        raised, asked = within_at(place)
+        if not raised:
+            lost.append(place)
+        # Once it has been told, it is told for good, and whoever was told counts as having heard.
+        if asked != sorted(asked) or any(asked) != terminal._interruption.heard:
+            unheard.append((place, asked))
+    assert not lost
+    assert not unheard
 
 
 @posix
@@ -317,7 +369,7 @@ def test_ctrl_c_ends_with_130_and_without_half_a_file(tmp_path: Path, arguments:
         for _ in range(presses):
             process.send_signal(signal.SIGINT)
             time.sleep(0.02)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=PATIENCE_S)
     # A second one may find Python shutting down, and ends it as a shell expects.
     assert process.returncode in ((130,) if presses == 1 else (130, -signal.SIGINT))
     assert errors == b""
