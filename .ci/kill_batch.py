@@ -86,6 +86,7 @@ def run_killed(folder: Path, jobs: int, kills: int, seed: int) -> None:
         child = subprocess.Popen(
             [
                 sys.executable,
+                *("-W", "ignore"),
                 __file__,
                 "--only",
                 str(folder),

@@ -139,7 +139,33 @@ def test_what_goes_wrong_there_is_one_sentence(error: Exception, sentence: str) 
 
 def test_a_lost_connection_ends_the_batch() -> None:
     with pytest.raises(InputError, match="connection to the cluster was lost; run the batch again"):
-        ship(Client(lambda order: (None, "lost")), orders(4))
+        ship(Client(lambda order: (None, "cancelled")), orders(4))
+
+
+def test_a_result_that_is_lost_with_its_worker_is_waited_for() -> None:
+    lost: list[Future] = []
+
+    class Losing(Client):
+        def submit(self, function: Any, *given: Any, key: str) -> Future:
+            future = super().submit(function, *given, key=key)
+            if key.startswith("texlab-job") and len(lost) < 3:
+                future.status = ("lost", "pending", "lost")[len(lost)]
+                lost.append(future)
+            return future
+
+    asked = []
+
+    def stop() -> bool:
+        # Made again after a while.
+        asked.append(None)
+        if len(asked) > 6:
+            for future in lost:
+                future.status = "finished"
+        return False
+
+    outcomes = ship(Losing(), orders(12), stop)
+    assert len(outcomes) == len({each.key for each in outcomes}) == 12
+    assert {each.error for each in outcomes} == {""}
 
 
 def test_stopping_cancels_what_waits() -> None:

@@ -26,6 +26,8 @@ from packaging.version import Version
 from PIL import Image
 
 import texlab_core
+from texlab.cli.main import build_parser
+from texlab_core.batch.plan import bundled_plans
 from texlab_core.engine import registry, run
 from texlab_core.images.formats.reading import READABLE_SUFFIXES
 
@@ -208,3 +210,6 @@ def test_hosted_ci_calls_what_a_checkout_calls() -> None:
     assert all((ROOT / each).is_file() for each in called)
     goals = set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
     assert set(re.findall(r"make (\w+)", commands)) <= goals
+    # Ours are commands that there are, with plans that there are.
+    assert set(re.findall(r"bin/texlab (\w+)", commands)) <= set(build_parser().commands)
+    assert set(re.findall(r" gallery:(\S+)", commands)) <= set(bundled_plans())

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 MAX_WORKERS = 256
 CONNECT_S = 10
 COUNT_S = 2.0
+# What a future says when nothing more will come.
+OVER = ("finished", "error", "cancelled")
 DIED = "The workers that ran it ended without a word several times; there may be too little memory for it."
 
 
@@ -129,6 +131,8 @@ class _Shipping:
         self._count_workers = count_workers
         self._arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._waiting: dict[str, tuple[Any, Order]] = {}
+        # Results that went down with the worker that had them: the cluster makes them again.
+        self._lost: list[Any] = []
         self._parcels = _Sent(client)
 
     def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
@@ -140,6 +144,7 @@ class _Shipping:
                 if not room or time.monotonic() - counted > COUNT_S:
                     # Workers come and go.
                     room, counted = 2 * self._count_workers(self._client), time.monotonic()
+                self._look_after_the_lost()
                 while more and len(self._waiting) < room:
                     loaded = next(orders, None)
                     if loaded is None:
@@ -147,7 +152,9 @@ class _Shipping:
                         break
                     self._send(*loaded)
                 with contextlib.suppress(queue.Empty):
-                    yield self._receive(self._arrived.get(timeout=POLL_S))
+                    outcome = self._receive(self._arrived.get(timeout=POLL_S))
+                    if outcome is not None:
+                        yield outcome
         finally:
             if self._waiting:
                 # What waits never starts; what runs asks at each step whether it was cancelled.
@@ -162,13 +169,25 @@ class _Shipping:
         self._waiting[key] = (future, order)
         future.add_done_callback(self._arrived.put)
 
-    def _receive(self, future: Any) -> Outcome:
+    def _look_after_the_lost(self) -> None:
+        lost, self._lost = self._lost, []
+        for future in lost:
+            if future.status in OVER:
+                self._arrived.put(future)
+            else:
+                self._lost.append(future)
+
+    def _receive(self, future: Any) -> Outcome | None:
+        """Return what became of an order; None when its worker is gone, and it has to be made again."""
+        if future.status not in OVER:
+            self._lost.append(future)
+            return None
         _, order = self._waiting.pop(future.key)
         self._parcels.leave(order.parcels)
         if future.status == "finished":
             outcome: Outcome = future.result()
             return outcome
-        if future.status != "error":
+        if future.status == "cancelled":
             raise InputError("The connection to the cluster was lost; run the batch again to go on.")
         error = future.exception()
         if type(error).__name__ == "KilledWorker":
