@@ -9,6 +9,7 @@ and on a Dask cluster that loses five of its workers. Each seed draws other mome
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import random
 import signal
@@ -65,8 +66,11 @@ def run_on_a_cluster(folder: Path, jobs: int, seed: int) -> None:
 
     def watch(progress: Any) -> None:
         if len(killed) < len(moments) and progress.done >= moments[len(killed)]:
-            children = psutil.Process().children(recursive=True)
-            workers = [each for each in children if "spawn_main" in " ".join(each.cmdline())]
+            workers = []
+            for each in psutil.Process().children(recursive=True):
+                # One that has just died has no command line any more.
+                with contextlib.suppress(psutil.Error):
+                    workers += [each] if "spawn_main" in " ".join(each.cmdline()) else []
             # While the last one is started again there may be none.
             if workers:
                 killed.append(draw.choice(workers).pid)

@@ -47,7 +47,7 @@ class Experiment:
 def add_image(parser: Parser, name: str = "image", words: str = "the picture") -> None:
     """Add an image with the options that crop and reduce it."""
     parser.add_argument(name, metavar="IMAGE|gallery:NAME", help=words)
-    add_scale_options(parser)
+    add_scale_options(parser, levels=False)
 
 
 def add_out(parser: Parser, *, required: bool = False) -> None:

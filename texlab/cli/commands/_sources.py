@@ -57,15 +57,20 @@ class Reading:
         return as_exemplar(image, scale=scale, crop=crop, levels=Levels.auto(image.pixels))
 
 
-def add_scale_options(parser: Parser, *, keeps: bool = False) -> None:
-    """Add ``--scale`` and ``--crop``, and what belongs to every image; see :func:`add_alpha_options`."""
+def add_scale_options(parser: Parser, *, keeps: bool = False, levels: bool = True) -> None:
+    """Add ``--scale``, ``--crop`` and ``--levels``, and what belongs to every image.
+
+    ``levels`` is False where these are those of a pyramid; for the rest see :func:`add_alpha_options`.
+    """
     parser.add_argument("--scale", metavar="S", help="reduce the image first, 0 < S <= 1")
     parser.add_argument("--crop", metavar="WxH+X+Y", help="use this part of the (reduced) image")
-    parser.add_argument(
-        "--levels",
-        metavar="B,W,G|auto",
-        help="then make B black and W white (0 to 1), with the gamma G",
-    )
+    if levels:
+        parser.add_argument(
+            "--levels",
+            dest="image_levels",
+            metavar="B,W,G|auto",
+            help="then make B black and W white (0 to 1), with the gamma G",
+        )
     add_alpha_options(parser, keeps=keeps)
 
 
@@ -104,7 +109,7 @@ def parse_reading(args: argparse.Namespace) -> Reading:
         None if crop is None else parse_crop(crop),
         args.alpha,
         background,
-        _levels(getattr(args, "levels", None)),
+        _levels(getattr(args, "image_levels", None)),
     )
 
 
@@ -233,12 +238,6 @@ def load_input(source: Source, spec: InputSpec) -> Input:
     from texlab_core.images.named_input import read_input
 
     reading = source.reading
-    return read_input(
-        source.place,
-        spec,
-        scale=reading.scale,
-        crop=reading.crop,
-        alpha=reading.alpha,
-        background=reading.background,
-        should_stop=interrupted,
-    )
+    if spec.kind == "image":
+        return reading.read(source.place)
+    return read_input(source.place, spec, scale=reading.scale, crop=reading.crop)
