@@ -260,7 +260,10 @@ def test_chances_are_of_paired_differences() -> None:
     assert one.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((0 + 1) / 2 / 2)))
     assert two.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((2 + 1) / 2 / 2)))
     assert one.gain == pytest.approx(0.01)
+    # V is larger by .01 in every seed, of which .005 cannot be seen.
     assert one.larger == two.larger == 1.0
+    (unseen,) = compared([tried(0.3, (-4.3, -3.9), (0.304, 0.304))], START, None)
+    assert unseen.larger == 0.0
     assert (one.sure, one.much) == (one.within, pytest.approx(one.within * 0.01))
     # Against a fixed limit it is not paired: D itself counts.
     (fixed,) = compared([steady], START, -4.0)

@@ -47,6 +47,8 @@ class Final:
 FINAL = Final(candidates=14, first=5, finalists=5, seeds=16)
 # Of settings that differ in single thresholds only, so many are measured again.
 ALIKE = 2
+# Of V: what is less does not show in two digits.
+LEAST_GAIN = 0.005
 # Of small budgets.
 SHORT_FINAL = Final(candidates=4, first=3, finalists=4, seeds=3)
 FINAL_FROM = 300
@@ -88,7 +90,7 @@ class Ahead:
     within
         Chance that D is at most the limit.
     larger
-        Chance that V is larger than that of the start.
+        Chance that V is larger than that of the start by what can be seen.
     gain
         By how much V is larger.
     """
@@ -130,7 +132,7 @@ def compared(found: Sequence[Tried], start: Tried, limit: float | None) -> list[
     return [
         Ahead(
             within=_chance(-fmean(below), _deviation(below, usual[0])),
-            larger=_chance(fmean(above), _deviation(above, usual[1])),
+            larger=_chance(fmean(above) - LEAST_GAIN, _deviation(above, usual[1])),
             gain=fmean(above),
         )
         for below, above in zip(kept, gained, strict=True)
