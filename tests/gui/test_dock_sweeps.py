@@ -739,7 +739,7 @@ def test_the_sheet_is_saved_with_its_recipe(qtbot, bench, tmp_path):
     with qtbot.waitSignal(here.controller.said, timeout=PATIENCE_MS) as said:
         dialog.accept()
     path = path.with_suffix(".png")
-    assert said.args == [f"Saved {path} with its recipe."]
+    assert said.args == [f"Saved {path} with its sweep."]
     again = find_sweep(str(path))
     assert again.axes == RECIPE.axes
     assert again.name == "stub-levels"
