@@ -11,15 +11,15 @@ import pytest
 from dock_scenes import check_controls
 from PIL import Image
 from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QWheelEvent
-from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
+from PySide6.QtGui import QContextMenuEvent, QWheelEvent
+from PySide6.QtWidgets import QApplication, QFileDialog, QMenu, QWidget
 
 from tests import stub_method
 from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
 from texlab.docks.host import DockHost
 from texlab.docks.sweeps.axis import AxisEditor
-from texlab.docks.sweeps.dock import SweepsDock
-from texlab.docks.sweeps.sheet_view import packed
+from texlab.docks.sweeps.dock import SweepsDock, arranged, sortings
+from texlab.docks.sweeps.sheet_view import NARROWEST, packed
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
 from texlab.runs.sweep_run import sweep_of
@@ -31,7 +31,8 @@ from texlab.window.carrier import Carrier
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
-from texlab_core.sheets.sweep import Vary
+from texlab_core.measures.registry import measures
+from texlab_core.sheets.sweep import Cell, Vary
 from texlab_core.sheets.sweep_recipes import SweepRecipe, bundled_sweeps, find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
@@ -529,6 +530,110 @@ def test_the_keyboard_takes_a_cell(qtbot, bench):
     qtbot.keyClick(canvas, Qt.Key.Key_Home)
     qtbot.keyClick(canvas, Qt.Key.Key_Space)
     assert here.params == StubParams(level=0.0)
+
+
+def test_a_grid_has_headings_and_a_series_captions(qtbot, bench):
+    here = bench()
+    dock = here.dock
+    canvas = dock.sheet.canvas
+    set_range(qtbot, dock.panel.across, "level", "0", "2", "3")
+    complete(qtbot, dock)
+    assert canvas.headings is None
+    assert canvas._caption(1) == "level 1"
+    first = canvas.rect_of(0)
+    choose(qtbot, dock.panel.down.knob, "border")
+    complete(qtbot, dock)
+    assert canvas.headings == (["level 0", "level 1", "level 2"], ["border reflect", "border wrap"])
+    assert canvas._caption(1) == ""
+    widest = max(canvas.fontMetrics().horizontalAdvance(text) for text in canvas.headings[1])
+    assert canvas.rect_of(0).left() >= min(widest, NARROWEST)
+    assert canvas.rect_of(0).top() >= first.top() + canvas.fontMetrics().lineSpacing()
+    for index in range(6):
+        assert canvas.index_at(canvas.rect_of(index).center()) == index
+    assert canvas.index_at(QPoint(2, canvas.rect_of(0).center().y())) is None
+
+
+def test_cells_become_columns_and_are_kept(qtbot, bench):
+    here = bench()
+    dock, session, canvas = here.dock, here.session, here.dock.sheet.canvas
+    set_range(qtbot, dock.panel.across, "seed", "3", "5", "3")
+    complete(qtbot, dock)
+    middle = Qt.MouseButton.MiddleButton
+    qtbot.mouseClick(canvas, middle, pos=canvas.rect_of(0).center())
+    assert [(each.id, each.method, each.seed) for each in session.state.columns] == [
+        (1, "stub", None),
+        (2, "stub", 3),
+    ]
+    assert here.params == StubParams()
+    assert session.undo_text == "column of a sweep"
+    # The seed of all columns needs no lock.
+    canvas.setFocus()
+    qtbot.keyClick(canvas, Qt.Key.Key_End)
+    qtbot.keyClick(canvas, Qt.Key.Key_N)
+    assert [each.seed for each in session.state.columns] == [None, None, 3]
+    qtbot.keyClick(canvas, Qt.Key.Key_K)
+    assert dock.kept == {2}
+    assert canvas.describe(2).startswith("Kept: ")
+    qtbot.mouseClick(dock.only_kept, LEFT, pos=QPoint(8, dock.only_kept.height() // 2))
+    assert canvas.order == [2]
+    assert canvas.rect_of(0).isEmpty()
+    qtbot.keyClick(canvas, Qt.Key.Key_K)
+    assert dock.kept == set()
+    assert canvas.order == []
+    assert dock.only_kept.isEnabled()
+    qtbot.mouseClick(dock.only_kept, LEFT, pos=QPoint(8, dock.only_kept.height() // 2))
+    assert canvas.order == [0, 1, 2]
+    assert not dock.only_kept.isEnabled()
+    # The menu of a cell, opened from the keyboard.
+    event = QContextMenuEvent(QContextMenuEvent.Reason.Keyboard, QPoint(), canvas.mapToGlobal(QPoint()))
+    QApplication.sendEvent(canvas, event)
+    menu = canvas.findChild(QMenu, "sweeps-cell-menu")
+    assert [each.text().partition("\t")[0] for each in menu.actions()] == [
+        "&Take the parameters", "Open as a &new column", "&Keep",
+    ]  # fmt: skip
+    menu.actions()[2].trigger()
+    assert dock.kept == {canvas.current}
+    menu.close()
+    qtbot.waitUntil(lambda: not here.controller.busy, timeout=PATIENCE_MS)
+
+
+def test_cells_are_sorted_by_a_measure(qtbot, bench):
+    here = bench()
+    dock, canvas = here.dock, here.dock.sheet.canvas
+    set_range(qtbot, dock.panel.across, "level", "0", "2", "3")
+    choose(qtbot, dock.panel.down.knob, "border")
+    complete(qtbot, dock)
+    title = measures()["visual-difference"].title
+    choose(qtbot, dock.sorting, f"by {title}")
+    dock.sorting.activated.emit(dock.sorting.currentIndex())
+    values = [dock.cells[index].cell.measures["visual-difference"] for index in canvas.order]
+    assert sorted(canvas.order) == list(range(6))
+    assert values == sorted(values, reverse=True)
+    assert not canvas._heads[0]
+    last = canvas.order[-1]
+    click_cell(qtbot, dock, last)
+    assert here.params == dock.sweep.jobs[last].params
+    choose(qtbot, dock.sorting, "as varied")
+    dock.sorting.activated.emit(0)
+    assert canvas.order == list(range(6))
+    qtbot.waitUntil(lambda: not here.controller.busy, timeout=PATIENCE_MS)
+
+
+def test_the_order_of_cells() -> None:
+    def cell(**measures):
+        return Cell(index=0, job=None, values={}, measures=measures)
+
+    lower = next(id for id, each in measures().items() if each.better == "lower")
+    higher = next(id for id, each in measures().items() if each.better == "higher")
+    values = {0: 0.3, 1: 0.1, 3: 0.2}
+    cells = {index: cell(**{lower: value, higher: value}) for index, value in values.items()}
+    assert arranged(5, cells, None, None) is None
+    assert arranged(5, cells, lower, None) == [1, 3, 0, 2, 4]
+    assert arranged(5, cells, higher, None) == [0, 3, 1, 2, 4]
+    assert arranged(5, cells, higher, {1, 2, 3}) == [3, 1, 2]
+    assert arranged(5, cells, None, {3, 1}) == [1, 3]
+    assert arranged(5, cells, None, ()) == []
+    assert [id for _, id in sortings(cells.values())] == [id for id in measures() if id in (lower, higher)]
 
 
 def test_a_failed_cell_says_why_and_is_not_taken(qtbot, bench):

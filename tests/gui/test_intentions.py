@@ -12,6 +12,7 @@ import pytest
 from texlab.state import intentions
 from texlab.state.intentions import (
     AskOnce,
+    CellAsColumn,
     ChangeMethod,
     ChooseColumn,
     EditField,
@@ -40,6 +41,7 @@ from texlab.window.carrier import Carrier
 from texlab_core.engine.inputs import DataInput, ImageInput, hash_arrays
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
+from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.sheets.sweep import Cell, Vary
 
 HB, EL = methods()["heeger-bergen"], methods()["efros-leung"]
@@ -211,6 +213,31 @@ def test_holes_are_filled_in_a_column_of_their_own_then_in_the_same(bench: Bench
     bench.do(FillHoles("efros-leung", inputs, None))
     assert bench.session.state.columns[-1] == Column(column.id, "efros-leung", EL.params(window=5), inputs, None)
     assert bench.chosen == [column.id, column.id]
+
+
+def test_a_cell_becomes_a_column(bench: Bench) -> None:
+    params = HB.params(iterations=4)
+    bench.do(CellAsColumn(cell_of("heeger-bergen", params, {"iterations": 4}), 1))
+    columns = bench.session.state.columns
+    assert [each.id for each in columns] == [1, 3, 2]
+    assert (columns[1].params, columns[1].seed) == (params, 9)
+    assert columns[0].params == HB.params()
+    assert bench.chosen == [3]
+    assert bench.session.undo_text == "column of a sweep"
+
+
+def test_thresholds_set_by_hand_do_not_go_in_silence(bench: Bench) -> None:
+    method = methods()["de-bonet"]
+    by_hand = method.params(
+        thresholds=ThresholdTable((((1, "luminance/laplacian"), 0.5), ((2, "luminance/laplacian"), 0.4)))
+    )
+    bench.session.set_method(1, "de-bonet", by_hand)
+    bench.do(TakeCell(cell_of("de-bonet", method.params(alpha=0.4), {"alpha": 0.4}), (1,)))
+    said = [("said", "2 thresholds set by hand gave way to those of the cell; undo brings them back.")]
+    assert bench.controller.orders == said
+    # Nothing to lose is nothing to say.
+    bench.do(TakeCell(cell_of("de-bonet", method.params(alpha=0.2), {"alpha": 0.2}), (1,)))
+    assert bench.controller.orders == said
 
 
 def test_a_cell_is_taken_by_the_column_that_is_wanted(bench: Bench) -> None:

@@ -7,12 +7,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from texlab.state.session import Column, Sample, State
+from texlab_core.engine.params import describe
+from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab_core.engine.inputs import DataInput, ImageInput
     from texlab_core.engine.job import Job
+    from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
 
 COMFORTABLE_SIDE = 256
@@ -203,6 +206,29 @@ def rescaled(sample: Sample, scale: float) -> Sample:
         left = min(round(crop.left * factor), width - columns)
         crop = Crop(top, left, rows, columns)
     return dataclasses.replace(sample, scale=scale, crop=crop)
+
+
+def with_cell_column(state: State, cell: Cell, after: int) -> tuple[State, int]:
+    """Return the state with a new column that has what made a cell (all but the size), and its id.
+
+    It stands behind the column with the id ``after``, or at the end; nothing else is changed.
+    """
+    job = cell.job
+    inputs = tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
+    seed = None if job.seed == state.seed else job.seed
+    column = Column(state.next_id, job.method, job.params, inputs, seed=seed)
+    places = [each.id for each in state.columns]
+    place = places.index(after) + 1 if after in places else len(places)
+    # Behind all that are pinned.
+    place = max(place, sum(each.pinned for each in state.columns))
+    columns = (*state.columns[:place], column, *state.columns[place:])
+    return dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), column.id
+
+
+def by_hand(params: Params) -> int:
+    """Return how many cells of threshold tables were set by hand in some parameters."""
+    tables = (getattr(params, each.name) for each in describe(type(params)) if each.type is ThresholdTable)
+    return sum(len(table.cells) for table in tables)
 
 
 def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State, int] | None:

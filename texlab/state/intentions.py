@@ -282,6 +282,14 @@ class TakeCell:
 
 
 @dataclass(frozen=True)
+class CellAsColumn:
+    """Open a cell of a sweep as a column of its own, with its seed, behind the column ``after``, and choose it."""
+
+    cell: Cell
+    after: int = 0
+
+
+@dataclass(frozen=True)
 class OpenLesson:
     """Give a lesson: one that comes with the program, or the name of one of the user's own."""
 
@@ -351,6 +359,7 @@ Intention = (
     | RunTuning
     | StopTuning
     | TakeCell
+    | CellAsColumn
     | OpenLesson
     | GoToStep
     | LeaveLesson

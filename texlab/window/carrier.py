@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, assert_never
 
-from texlab.state.changes import sample_of, with_cell
+from texlab.state.changes import by_hand, sample_of, with_cell, with_cell_column
 from texlab.state.intentions import (
     AskOnce,
+    CellAsColumn,
     ChangeMethod,
     ChangeSteps,
     ChooseColumn,
@@ -161,6 +162,10 @@ class Carrier:
                 self._teach(intention)
             case TakeCell():
                 self._take(intention)
+            case CellAsColumn(cell, after):
+                state, column_id = with_cell_column(session.state, cell, after)
+                session.apply(state, "column of a sweep")
+                self._choose(column_id)
             case _:
                 assert_never(intention)
 
@@ -178,5 +183,10 @@ class Carrier:
             self._controller.problem.emit(f"No column runs {title} any more; add one to take the parameters.")
             return
         state, column_id = found
+        before, now = self._session.state.column(column_id), state.column(column_id)
+        lost = 0 if before is None or before == now else by_hand(before.params)
         self._session.apply(state, f"sweep {cell.setting}" if cell.setting else "parameters of a point")
         self._choose(column_id)
+        if now is not None and lost > by_hand(now.params):
+            some = f"{lost} thresholds" if lost > 1 else "One threshold"
+            self._controller.said.emit(f"{some} set by hand gave way to those of the cell; undo brings them back.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
@@ -17,28 +17,30 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.docks.base import Question
-from texlab.docks.frame import FramedDock
+from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.sweeps.panel import SweepPanel
 from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactSheetView
-from texlab.state.intentions import AskOnce, RunSweep, StopSweep, TakeCell, Tell
+from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.numbers import duration, remaining
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
+from texlab_core.measures.registry import measures
 from texlab_core.sheets.sweep import show
 from texlab_core.sheets.sweep_recipes import bundled_sweeps
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.state.sweeps import ShownCell, SweepScene
-    from texlab_core.sheets.sweep import Sweep
+    from texlab_core.sheets.sweep import Cell, Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 ZOOM_STEP = 16
+AS_VARIED: list[tuple[str, Any]] = [("as varied", None)]
 
 
 class SweepsDock(FramedDock):
@@ -57,10 +59,13 @@ class SweepsDock(FramedDock):
         # What is painted at present.
         self.shown = NO_SWEEP
         self.cells: dict[int, ShownCell] = {}
+        self.kept: set[int] = set()
         self._build_line()
         self.panel = SweepPanel(self.name)
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
         self.sheet.taken.connect(self._take)
+        self.sheet.opened.connect(self._open)
+        self.sheet.kept.connect(self._keep)
         self.sheet.zoom_wanted.connect(self._zoom)
         self.heading = Label("")
         self.heading.setObjectName("sweeps-heading")
@@ -117,6 +122,13 @@ class SweepsDock(FramedDock):
         self.add_control(
             self.zoom, "zoom", "Size of the pictures", "How large the cells are shown (Ctrl+wheel, +, -)"
         )
+        self.sorting = self.add_choice(
+            "sort", "Order", "In which order the cells stand: as varied, or the best first", (), self._sort
+        )
+        self.only_kept = self.add_switch(
+            "only-kept", "Kept", "Show only the cells that are kept (K)", self._show_only_kept
+        )
+        replace_items(self.sorting, AS_VARIED)
         self.status = Label("")
         self.add_control(self.status, "status", "State of the sweep", "How far the sweep is")
 
@@ -161,14 +173,20 @@ class SweepsDock(FramedDock):
         if is_new:
             columns = len(sweep.axes[0].values) if len(sweep.axes) == 2 else None
             count, size = len(sweep.jobs), sweep.base.picture_size
+            heads = headings(sweep)
             if self._fits:
                 # Until the user chooses a size.
-                self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size)))
-            self.sheet.show_grid([setting(sweep, index) for index in range(count)], columns, size)
+                down = heads[1] if heads is not None else ()
+                self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size), down))
+            settings = [setting(sweep, index) for index in range(count)]
+            self.kept.clear()
+            self.sheet.show_grid(settings, columns, size, heads)
             self.heading.setText(" · ".join(sweep_title(sweep)))
             set_tip(self.heading, self.heading.text())
         self.cells = {each.cell.index: each for each in shown.cells}
+        replace_items(self.sorting, AS_VARIED + sortings(each.cell for each in shown.cells))
         self.sheet.show_cells(self.cells)
+        self._sort()
         self.progress.setValue(round(1000 * shown.fraction))
         self.status.setText(status_text(shown))
 
@@ -177,6 +195,8 @@ class SweepsDock(FramedDock):
         self.stop_button.setEnabled(self.running)
         self.progress.setVisible(self.running)
         self.save_button.setEnabled(bool(self.cells))
+        self.sorting.setEnabled(self.sorting.count() > 1)
+        self.only_kept.setEnabled(bool(self.kept) or self.only_kept.isChecked())
 
     # What the user does.
 
@@ -204,6 +224,25 @@ class SweepsDock(FramedDock):
     def _zoom(self, steps: int) -> None:
         self._zoomed()
         self.zoom.setValue(self.zoom.value() + steps * ZOOM_STEP)
+
+    def _sort(self) -> None:
+        cells = {index: shown.cell for index, shown in self.cells.items()}
+        total = 0 if self.sweep is None else len(self.sweep.jobs)
+        kept = self.kept if self.only_kept.isChecked() else None
+        self.sheet.show_order(arranged(total, cells, self.sorting.currentData(), kept))
+
+    def _show_only_kept(self, _: bool) -> None:
+        self._sort()
+        self._show_state()
+
+    def _keep(self, index: int) -> None:
+        self.kept ^= {index}
+        self.sheet.show_kept(self.kept)
+        self._sort()
+        self._show_state()
+
+    def _open(self, index: int) -> None:
+        self.intention.emit(CellAsColumn(self.cells[index].cell, self.shown.column_id))
 
     def _take(self, index: int) -> None:
         chosen = 0 if self._column is None else self._column.id
@@ -272,6 +311,48 @@ def status_text(shown: SweepScene) -> str:
         left = shown.seconds * (1 - shown.fraction) / shown.fraction
         return f"{counts} · about {remaining(left)} left"
     return counts
+
+
+def sortings(cells: Iterable[Cell]) -> list[tuple[str, Any]]:
+    """Return (text, measure) for every measure by which these cells can be sorted."""
+    known = {id for cell in cells for id in cell.measures}
+    return [(f"by {each.title}", each.id) for each in measures().values() if each.id in known]
+
+
+def arranged(
+    total: int, cells: Mapping[int, Cell], by: str | None, kept: Collection[int] | None
+) -> list[int] | None:
+    """Return the cells that are shown in their order; None for all of them in their places.
+
+    Parameters
+    ----------
+    total
+        Number of cells, finished or not.
+    cells
+        Those that have finished, by index.
+    by
+        Id of a measure: the best value comes first, or the largest where none is better; cells without it, last.
+    kept
+        Only these; None for all.
+    """
+    if by is None and kept is None:
+        return None
+    shown = [index for index in range(total) if kept is None or index in kept]
+    if by is None:
+        return shown
+    sign = 1 if measures()[by].better == "lower" else -1
+    values = {index: cell.measures[by] for index, cell in cells.items() if by in cell.measures}
+    return sorted(shown, key=lambda index: (index not in values, sign * values.get(index, 0.0)))
+
+
+def headings(sweep: Sweep) -> tuple[list[str], list[str]] | None:
+    """Return the headings of columns and rows; None for a series, whose cells have captions."""
+    if len(sweep.axes) < 2:
+        return None
+    across, down = (
+        [f"{axis.name.replace('_', ' ')} {show(value)}" for value in axis.values] for axis in sweep.axes
+    )
+    return across, down
 
 
 def setting(sweep: Sweep, index: int) -> str:

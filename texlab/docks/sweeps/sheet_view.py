@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import bisect
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QHelpEvent, QImage, QPainter, QPixmap
-from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
+from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QHelpEvent, QImage, QPainter, QPixmap
+from PySide6.QtWidgets import QFrame, QMenu, QScrollArea, QWidget
 
 from texlab.style.theme import DARK
 from texlab.widgets.plain import show_tip
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from PySide6.QtGui import (
         QFontMetrics,
@@ -36,11 +37,14 @@ NARROWEST = 76
 class ContactSheetView(QScrollArea):
     """Shows the cells of a sweep in their places.
 
-    ``taken(index)``: a finished cell was clicked, or chosen with Return. ``zoom_wanted(steps)``: the wheel was
-    turned with Ctrl held, or + or - was pressed.
+    ``taken(index)``: a finished cell was clicked, or chosen with Return. ``opened(index)``: it is wanted as a
+    column (N, the middle button, the menu). ``kept(index)``: it is to be kept, or let go (K, the menu).
+    ``zoom_wanted(steps)``: the wheel was turned with Ctrl held, or + or - was pressed.
     """
 
     taken = Signal(int)
+    opened = Signal(int)
+    kept = Signal(int)
     zoom_wanted = Signal(int)
 
     def __init__(self, name: str, empty: str, parent: QWidget | None = None) -> None:
@@ -52,7 +56,13 @@ class ContactSheetView(QScrollArea):
         self.canvas.setObjectName(f"{name}-canvas")
         self.setWidget(self.canvas)
 
-    def show_grid(self, settings: Sequence[str], columns: int | None, shape: tuple[int, int]) -> None:
+    def show_grid(
+        self,
+        settings: Sequence[str],
+        columns: int | None,
+        shape: tuple[int, int],
+        headings: tuple[Sequence[str], Sequence[str]] | None = None,
+    ) -> None:
         """Start an empty sheet.
 
         Parameters
@@ -63,9 +73,14 @@ class ContactSheetView(QScrollArea):
             Cells in a row; None lets a series flow with the width of the window.
         shape
             Height and width of the pictures to come.
+        headings
+            Of the columns and of the rows of a grid: then no cell needs its setting as a caption.
         """
         self.canvas.settings = list(settings)
+        self.canvas.order = list(range(len(settings)))
         self.canvas.fixed_columns = columns
+        self.canvas.headings = headings
+        self.canvas.kept = frozenset()
         self.canvas.shape = shape
         self.canvas.cells = {}
         self.canvas.pixmaps.clear()
@@ -79,7 +94,16 @@ class ContactSheetView(QScrollArea):
         """Show the cells that have finished."""
         self.canvas.show_cells(cells)
 
-    def fitting_side(self, count: int, columns: int | None, largest: int) -> int:
+    def show_order(self, order: Sequence[int] | None) -> None:
+        """Show these cells in this order, as a series; None shows all in their places."""
+        self.canvas.show_order(order)
+
+    def show_kept(self, kept: Collection[int]) -> None:
+        """Mark the cells that are kept with a star."""
+        self.canvas.kept = frozenset(kept)
+        self.canvas.update()
+
+    def fitting_side(self, count: int, columns: int | None, largest: int, down: Sequence[str] = ()) -> int:
         """Return a size for square cells: all are in sight if that is possible, else the columns of a grid.
 
         Parameters
@@ -88,8 +112,11 @@ class ContactSheetView(QScrollArea):
             Number of cells, and of cells in a row; None for a series.
         largest
             Size beyond which the pictures would be enlarged.
+        down
+            Headings of the rows, which need room beside them.
         """
         width = self.width() - self.verticalScrollBar().sizeHint().width()
+        width -= self.canvas.room_beside(down) - _GAP
         caption = 4 + 3 * self.canvas.fontMetrics().lineSpacing()
         for side in range(min(largest, LARGEST), USUAL, -4):
             across = columns or max(1, (width - _GAP) // (side + _GAP))
@@ -136,6 +163,11 @@ class _Canvas(QWidget):
         self._empty = empty
         self.theme: Theme = DARK
         self.settings: list[str] = []
+        # Indices of the cells in the order in which they stand; another order, or a part, has no rows and columns.
+        self.order: list[int] = []
+        self.is_grid = True
+        self.headings: tuple[Sequence[str], Sequence[str]] | None = None
+        self.kept: frozenset[int] = frozenset()
         self.fixed_columns: int | None = None
         self.shape = (1, 1)
         self.cells: dict[int, ShownCell] = {}
@@ -144,6 +176,8 @@ class _Canvas(QWidget):
         self.current = 0
         self._side = USUAL
         self._columns = 1
+        self._left = _GAP
+        self._places: dict[int, int] = {}
         self._tops = [_GAP]
         self._lines: list[int] = []
         self._over: int | None = None
@@ -171,43 +205,72 @@ class _Canvas(QWidget):
         return max(self.picture_size.width(), NARROWEST)
 
     def rect_of(self, index: int) -> QRect:
-        """Return the rectangle of a cell."""
-        row, column = divmod(index, self._columns)
-        x = _GAP + column * (self._cell_width + _GAP)
+        """Return the rectangle of a cell; an empty one for a cell that is not shown."""
+        if index not in self._places:
+            return QRect()
+        row, column = divmod(self._places[index], self._columns)
+        x = self._left + column * (self._cell_width + _GAP)
         return QRect(x, self._tops[row], self._cell_width, self._tops[row + 1] - _GAP - self._tops[row])
 
     def index_at(self, place: QPoint) -> int | None:
         """Return the cell at a place."""
         half = _GAP // 2
-        column = (place.x() - half) // (self._cell_width + _GAP)
+        column = (place.x() - self._left + half) // (self._cell_width + _GAP)
         row = bisect.bisect_right(self._tops, place.y() + half) - 1
-        index = row * self._columns + column
+        at = row * self._columns + column
         inside = 0 <= column < self._columns and row >= 0
-        return index if inside and index < len(self.settings) else None
+        return self.order[at] if inside and at < len(self.order) else None
 
     def relayout(self) -> None:
         """Place the cells anew; a row is as high as its longest caption."""
         viewport = self._view.viewport().size()
         width = self._cell_width
         fitting = max(1, (viewport.width() - _GAP) // (width + _GAP))
-        self._columns = self.fixed_columns or min(fitting, max(len(self.settings), 1))
+        fixed = self.fixed_columns if self.is_grid else None
+        self._columns = fixed or min(fitting, max(len(self.order), 1))
+        self._places = {index: place for place, index in enumerate(self.order)}
         line, picture = self.fontMetrics().lineSpacing(), self.picture_size.height()
-        self._tops, self._lines = [_GAP], []
-        for first in range(0, len(self.settings), self._columns):
+        self._left = self.room_beside(self._heads[1])
+        self._tops, self._lines = [_GAP + (line + _GAP // 2 if self._heads[0] else 0)], []
+        for first in range(0, len(self.order), self._columns):
             self._lines.append(self._caption_lines(first))
             self._tops.append(self._tops[-1] + picture + 4 + self._lines[-1] * line + _GAP)
-        wanted = QSize(_GAP + self._columns * (width + _GAP), self._tops[-1]) if self.settings else QSize(0, 0)
+        wanted = QSize(self._left + self._columns * (width + _GAP), self._tops[-1]) if self.order else QSize(0, 0)
         # As large as the view where that is larger, but never so large that a scroll bar comes for nothing.
         self.resize(wanted.expandedTo(viewport))
         self.update()
 
+    def room_beside(self, down: Sequence[str]) -> int:
+        """Return where the first column begins, beside the headings of the rows."""
+        widest = max(map(self.fontMetrics().horizontalAdvance, down), default=0)
+        return _GAP + (min(widest, NARROWEST) + _GAP if down else 0)
+
     def _caption_lines(self, first: int) -> int:
         """Return how many lines the captions of the row that starts with this cell need."""
         metrics, width = self.fontMetrics(), self._cell_width
-        row = range(first, min(first + self._columns, len(self.settings)))
-        count = max(len(packed(self.settings[index], width, metrics)) for index in row)
+        row = self.order[first : first + self._columns]
+        count = max(len(packed(self._caption(index), width, metrics)) for index in row)
         found = [len(packed(self.cells[each].cell.evidence, width, metrics)) for each in row if each in self.cells]
         return count + max(found, default=self._evidence_lines)
+
+    @property
+    def _heads(self) -> tuple[Sequence[str], Sequence[str]]:
+        """Headings of the columns and of the rows, as long as the cells stand in them."""
+        return self.headings if self.headings is not None and self.is_grid else ((), ())
+
+    def _caption(self, index: int) -> str:
+        """Return what is varied in a cell, where no heading says it."""
+        return "" if self._heads[0] else self.settings[index]
+
+    def show_order(self, order: Sequence[int] | None) -> None:
+        """Show these cells in this order; None shows all in their places."""
+        wanted = list(range(len(self.settings)) if order is None else order)
+        if (wanted, order is None) == (self.order, self.is_grid):
+            return
+        self.order, self.is_grid = wanted, order is None
+        if self.current not in wanted:
+            self.current = wanted[0] if wanted else 0
+        self.relayout()
 
     @property
     def _evidence_lines(self) -> int:
@@ -233,7 +296,7 @@ class _Canvas(QWidget):
             return
         for index in fresh:
             self.pixmaps.pop(index, None)
-        rows = range(0, len(self.settings), self._columns)
+        rows = range(0, len(self.order), self._columns)
         if [self._caption_lines(first) for first in rows] != self._lines:
             self.relayout()
         for index in fresh:
@@ -251,10 +314,24 @@ class _Canvas(QWidget):
             painter.drawText(area, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._empty)
         first = max(0, bisect.bisect_right(self._tops, event.rect().top()) - 1) * self._columns
         last = bisect.bisect_right(self._tops, event.rect().bottom() + _GAP) * self._columns
-        for index in range(first, min(last, len(self.settings))):
+        self._paint_headings(painter)
+        for index in self.order[first:last]:
             if self.rect_of(index).adjusted(-4, -4, 4, 4).intersects(event.rect()):
                 self._paint_cell(painter, index)
         painter.end()
+
+    def _paint_headings(self, painter: QPainter) -> None:
+        across, down = self._heads
+        metrics, width = self.fontMetrics(), self._cell_width
+        painter.setPen(QColor(self.theme.text))
+        for column, text in enumerate(across):
+            elided = metrics.elidedText(text, Qt.TextElideMode.ElideRight, width)
+            area = QRect(self._left + column * (width + _GAP), _GAP // 2, width, metrics.lineSpacing())
+            painter.drawText(area, Qt.AlignmentFlag.AlignCenter, elided)
+        for row, text in enumerate(down):
+            area = QRect(_GAP // 2, self._tops[row], self._left - _GAP, self.picture_size.height())
+            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+            painter.drawText(area, flags, text)
 
     def _paint_cell(self, painter: QPainter, index: int) -> None:
         theme, area = self.theme, self.rect_of(index)
@@ -271,7 +348,16 @@ class _Canvas(QWidget):
             self._paint_error(painter, box, shown.cell.error)
         else:
             painter.drawPixmap(box, self._pixmap(index, shown.picture))
+        if index in self.kept:
+            self._paint_star(painter, box)
         self._paint_caption(painter, area.adjusted(0, size.height() + 3, 0, 0), index, shown)
+
+    def _paint_star(self, painter: QPainter, box: QRect) -> None:
+        side = self.fontMetrics().height() + 4
+        area = QRect(box.right() - side + 1, box.top(), side, side)
+        painter.fillRect(area, QColor(self.theme.accent))
+        painter.setPen(QColor(self.theme.accent_text))
+        painter.drawText(area, Qt.AlignmentFlag.AlignCenter, "★")
 
     def _paint_frame(self, painter: QPainter, index: int, area: QRect) -> None:
         theme = self.theme
@@ -289,7 +375,7 @@ class _Canvas(QWidget):
         evidence = "" if shown is None else shown.cell.evidence
         failed = shown is not None and shown.picture is None and index != self.marked
         y = area.top() + metrics.ascent()
-        for text, colour in ((self.settings[index], strong), (evidence, theme.error if failed else pale)):
+        for text, colour in ((self._caption(index), strong), (evidence, theme.error if failed else pale)):
             painter.setPen(QColor(colour))
             for line in packed(text, area.width(), metrics):
                 elided = metrics.elidedText(line, Qt.TextElideMode.ElideRight, area.width())
@@ -336,10 +422,32 @@ class _Canvas(QWidget):
             self._go(index)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Take a cell when it was clicked."""
+        """Take a cell when it was clicked; with the middle button it becomes a column."""
         index = self.index_at(event.position().toPoint())
-        if event.button() == Qt.MouseButton.LeftButton and index is not None and index == self.current:
-            self._take(index)
+        if index is None or index != self.current:
+            return
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._tell(self._view.taken, index)
+        elif event.button() == Qt.MouseButton.MiddleButton:
+            self._tell(self._view.opened, index)
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with the cell under the pointer, or with the current one."""
+        by_key = event.reason() == QContextMenuEvent.Reason.Keyboard
+        index = self.current if by_key else self.index_at(event.pos())
+        if index is None or self._shown_picture(index) is None:
+            return
+        self._go(index)
+        menu = QMenu(self)
+        menu.setObjectName("sweeps-cell-menu")
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        for text, signal in (
+            ("&Take the parameters\tReturn", self._view.taken),
+            ("Open as a &new column\tN", self._view.opened),
+            ("&Let go\tK" if index in self.kept else "&Keep\tK", self._view.kept),
+        ):
+            menu.addAction(text).triggered.connect(partial(self._tell, signal, index))
+        menu.popup(self.mapToGlobal(self.rect_of(index).center()) if by_key else event.globalPos())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Light the cell under the pointer; a hand where a click takes something."""
@@ -358,22 +466,26 @@ class _Canvas(QWidget):
             super().wheelEvent(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Move with the arrows, Home and End, take with Return or Space, zoom with + and -."""
+        """Move with the arrows, Home and End; take with Return or Space, N opens, K keeps, + and - zoom."""
         key = Qt.Key(event.key())
-        last = len(self.settings) - 1
+        last, at = len(self.order) - 1, self._places.get(self.current, 0)
         moves = {
-            Qt.Key.Key_Left: self.current - 1,
-            Qt.Key.Key_Right: self.current + 1,
-            Qt.Key.Key_Up: self.current - self._columns,
-            Qt.Key.Key_Down: self.current + self._columns,
+            Qt.Key.Key_Left: at - 1,
+            Qt.Key.Key_Right: at + 1,
+            Qt.Key.Key_Up: at - self._columns,
+            Qt.Key.Key_Down: at + self._columns,
             Qt.Key.Key_Home: 0,
             Qt.Key.Key_End: last,
         }
         if key in moves:
             if 0 <= moves[key] <= last:
-                self._go(moves[key])
+                self._go(self.order[moves[key]])
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):
-            self._take(self.current)
+            self._tell(self._view.taken, self.current)
+        elif key == Qt.Key.Key_N:
+            self._tell(self._view.opened, self.current)
+        elif key == Qt.Key.Key_K:
+            self._tell(self._view.kept, self.current)
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
             self._view.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
         else:
@@ -394,14 +506,14 @@ class _Canvas(QWidget):
             return f"{self.settings[index]}: not finished yet"
         if shown.picture is None:
             return f"{self.settings[index]}: {shown.cell.error}"
-        return f"{shown.cell.label}. Click to take the parameters."
+        star = "Kept: " if index in self.kept else ""
+        return f"{star}{shown.cell.label}. Click to take the parameters."
 
     def _point(self, index: int | None) -> None:
         if index == self._over:
             return
         self._over = index
-        shown = None if index is None else self.cells.get(index)
-        can_take = shown is not None and shown.picture is not None
+        can_take = index is not None and self._shown_picture(index) is not None
         self.setCursor(Qt.CursorShape.PointingHandCursor if can_take else Qt.CursorShape.ArrowCursor)
         self.update()
 
@@ -412,15 +524,19 @@ class _Canvas(QWidget):
         self.update()
 
     def _reveal(self, index: int) -> None:
-        if index < len(self.settings):
+        if index in self._places:
             area = self.rect_of(index)
             middle = area.center()
             self._view.ensureVisible(middle.x(), middle.y(), area.width() // 2 + _GAP, area.height() // 2 + _GAP)
 
-    def _take(self, index: int) -> None:
+    def _shown_picture(self, index: int) -> Picture | None:
         shown = self.cells.get(index)
-        if shown is not None and shown.picture is not None:
-            self._view.taken.emit(index)
+        return None if shown is None else shown.picture
+
+    def _tell(self, signal: Any, index: int, _: bool = False) -> None:
+        """Tell what is wanted of a cell, once there is something to want."""
+        if self._shown_picture(index) is not None and index in self._places:
+            signal.emit(index)
 
 
 def packed(text: str, width: int, metrics: QFontMetrics) -> list[str]:
