@@ -96,7 +96,7 @@ def test_any_input_is_given_by_its_name(texlab: Texlab) -> None:
         (("--input", "state=mask.png"), "is no .npz file of arrays"),
         (("--input", "state=gone.npz"), "cannot be opened"),
         (("--input", "state=gone.npz", "--input-scale", "state=0.5"), "neither scaled nor cropped"),
-        (("--input", "veil=mask.png"), "must be one of exemplar, start, mask, region, state"),
+        (("--input", "veil=mask.png"), "must be one of exemplar, start, mask, blend, region, patches, state"),
     ):
         shown = texlab(*synth, "--out", "c.png", *options)
         assert (shown.code, shown.err.count("\n")) == (2, 1)
