@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 
 from tests.gui.conftest import hb, ids, wait_idle
 from texlab.docks.history import START, HistoryDock
+from texlab.docks.host import NOTHING_YET
 from texlab.state.history import History
 from texlab.state.intentions import GoToState
 from texlab.state.scene import Scene
@@ -68,7 +69,7 @@ def show(dock: HistoryDock, *texts: str, at: int) -> None:
     dock.show_scene(scene)
     question = dock.question(scene)
     if question is None:
-        dock.present_nothing("")
+        dock.present_nothing(NOTHING_YET)
     else:
         dock.present(question.compute(lambda: False))
 

@@ -48,6 +48,7 @@ class HistoryDock(FramedDock):
         """Take the names of the steps; there is nothing to compute."""
         history = scene.history
         if len(history.texts) < 2:
+            self.why = self.empty
             self.controls.hide()
             return None
         self.controls.show()
