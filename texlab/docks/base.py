@@ -70,6 +70,9 @@ class Dock(QWidget):
     def present_waiting(self) -> None:
         """Say that the answer is under way, where nothing else is shown."""
 
+    def forget(self) -> None:
+        """Let go of an answer that nobody sees and that is about pictures that are no longer there."""
+
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -17,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.docks.base import Dock
-from texlab.docks.recent import Same
+from texlab.docks.recent import Recent, Same
 from texlab.state.intentions import ShowStage, TakePicture
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
 
 
 WORKING = "Working ..."
+STALE = "From before; the new one is being computed"
+# What comes sooner needs no such words.
+STALE_MS = 400
 
 
 def shown_image(column: ColumnScene | None) -> FloatImage | None:
@@ -91,6 +95,8 @@ class FramedDock(Dock):
     """
 
     empty: ClassVar[str] = "Nothing to show yet."
+    heavy: ClassVar[bool] = False
+    """Whether its answers are as large as pictures, and go when they are out of date and out of sight."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -111,6 +117,18 @@ class FramedDock(Dock):
         self.stage_button.hide()
         self.body = QWidget()
         self.body.setObjectName(f"{self.name}-body")
+        self._stale = Label(STALE, self.body)
+        self._stale.setObjectName(f"{self.name}-stale")
+        self._stale.setAutoFillBackground(True)
+        self._stale.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
+        self._stale.setForegroundRole(QPalette.ColorRole.ToolTipText)
+        self._stale.setMargin(3)
+        self._stale.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._stale.hide()
+        self._stale_soon = QTimer(self)
+        self._stale_soon.setSingleShot(True)
+        self._stale_soon.setInterval(STALE_MS)
+        self._stale_soon.timeout.connect(lambda: self._mark_stale(True))
         self._message = Label(self.empty)
         self._message.setObjectName(f"{self.name}-message")
         self._message.setProperty("role", "muted")
@@ -146,6 +164,12 @@ class FramedDock(Dock):
         for part in _themed(self.body):
             part.set_theme(theme)
 
+    def drop_kept(self) -> None:
+        """Empty what is kept from one answer to the next."""
+        for each in vars(self).values():
+            if isinstance(each, Recent):
+                each.clear()
+
     def looked_at(self, scene: Scene) -> LookedAt:
         """Return what to look at in the chosen column, and say so when that is a stage of its run."""
         stage, exemplar = scene.stage, scene.exemplar
@@ -165,18 +189,40 @@ class FramedDock(Dock):
     def present(self, answer: Any) -> None:
         """Show what ``Question.compute`` returned."""
         self.answer = answer
+        self._mark_stale(False)
         self.show_body()
         self.show_answer(answer)
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, in one sentence."""
         self.answer = None
+        self._mark_stale(False)
         self._message.setText(self.why or reason or self.empty)
         self._stack.setCurrentWidget(self._message)
 
     def present_waiting(self) -> None:
-        """Say that the answer is under way, unless one is shown."""
+        """Say that the answer is under way; over an earlier one that is shown, once that has lasted a moment."""
         self._message.setText(WORKING)
+        if self.answer is not None:
+            self._stale_soon.start()
+
+    def forget(self) -> None:
+        """Let go of what was shown, which was about pictures that are no longer there."""
+        if not self.heavy:
+            return
+        self.answer = None
+        self._mark_stale(False)
+        self._message.setText(WORKING)
+        self._stack.setCurrentWidget(self._message)
+        self.drop_kept()
+
+    def _mark_stale(self, stale: bool) -> None:
+        self._stale_soon.stop()
+        self._stale.setVisible(stale)
+        if stale:
+            self._stale.adjustSize()
+            self._stale.move(max(0, (self.body.width() - self._stale.width()) // 2), 4)
+            self._stale.raise_()
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""

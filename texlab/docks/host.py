@@ -34,6 +34,8 @@ class DockHost(QObject):
         self._scene: Scene | None = None
         self._asked: tuple[Any, ...] | None = None
         self._computing = False
+        # Whether the dock has an answer.
+        self._holds = False
         self._dirty = False
         self._was_seen: bool | None = None
         self._rested = QDeadlineTimer(0)
@@ -53,6 +55,10 @@ class DockHost(QObject):
         moved = before is not None and not self.dock.follows_pointer and same_but_probe(scene, before)
         if not moved:
             self._update()
+        if before is not None and not moved and self._holds and not self.seen and _is_about_others(scene, before):
+            # A tab behind another one would keep its pictures, and all that was computed from them, for good.
+            self._asked, self._holds = None, False
+            self.dock.forget()
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
@@ -135,6 +141,7 @@ class DockHost(QObject):
 
     def _answered(self, answer: Any) -> None:
         self._computing = False
+        self._holds = True
         self._rested.setRemainingTime(self.dock.rest_ms)
         self.dock.present(answer)
         self._again()
@@ -148,3 +155,11 @@ class DockHost(QObject):
         if self._dirty:
             self._dirty = False
             self._update()
+
+
+def _is_about_others(scene: Scene, before: Scene) -> bool:
+    """Whether the exemplar is another one, or the chosen column's result."""
+    if scene.exemplar is not before.exemplar:
+        return True
+    now, then = scene.selected, before.selected
+    return now is not None and then is not None and now.result is not then.result

@@ -80,6 +80,7 @@ class MapsDock(FramedDock):
     title = "Maps"
     help = "Where every pixel came from, how many candidates it had, what was copied."
     order = 40
+    heavy = True
     empty = "Maps appear when a method that records them has finished."
 
     def build(self) -> None:
@@ -161,6 +162,13 @@ class MapsDock(FramedDock):
             return colour(maps[name].plane, below, extent, region)
 
         return Question((self.name, Same(result), name, region), compute)
+
+    def drop_kept(self) -> None:
+        """Empty the pictures."""
+        super().drop_kept()
+        self.pane.set_overlay(None)
+        for pane in (self.pane, self.key):
+            pane.set_picture(None)
 
     def show_answer(self, answer: MapsAnswer) -> None:
         """Show the map with its legend."""

@@ -10,9 +10,12 @@ from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter
 
 from texlab.widgets.pane import Pane
+from texlab.widgets.picture_item import PictureItem
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
@@ -83,13 +86,13 @@ class ImagePane(Pane):
     # The base class resizes itself while it is made.
     _picture: Picture | None = None
     _note: Label | None = None
+    _copies: Sequence[PictureItem] = ()
+    _overlay: PictureItem | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         self._tiled = False
         self._look: NDArray[np.uint8] | None = None
         super().__init__(link, parent)
-        self._copies: list[Any] = []
-        self._overlay: Any = None
         self._marks: MarksItem | None = None
         self.view.sigResized.connect(lambda _: self._link.resized() if self._link is not None else None)
 
@@ -114,13 +117,9 @@ class ImagePane(Pane):
     def set_picture(self, picture: Picture | None) -> None:
         """Show a picture, or nothing."""
         self._picture = picture
-        shown = picture if picture is None or self._look is None else self._look[picture]
-        for item in (self.item, *self._copies):
-            if shown is None:
-                item.clear()
-            else:
-                item.setImage(shown, autoLevels=False, levels=None)
         self._place_copies()
+        for item in (self.item, *self._copies):
+            item.show_picture(picture, *self._seen(item), self._look)
         self._choose_filter()
         self.painted.emit()
 
@@ -129,6 +128,17 @@ class ImagePane(Pane):
         if table is not None or self._look is not None:
             self._look = table
             self.set_picture(self._picture)
+
+    def _seen(self, item: PictureItem) -> tuple[QRectF, float]:
+        """Return what can be seen of an item, and how many of its pixels make one of the screen."""
+        pixel = 1 / max(self.shown_scale * self.devicePixelRatioF(), 1e-9)
+        return self.view_rect().translated(-item.pos().x(), -item.pos().y()), pixel
+
+    def _prepare(self) -> None:
+        """Prepare for painting what can be seen of large pictures."""
+        overlay = () if self._overlay is None else (self._overlay,)
+        for item in (self.item, *self._copies, *overlay):
+            item.look(*self._seen(item))
 
     def set_surround(self, colour: str) -> None:
         """Paint this around the picture; "" leaves what the theme says."""
@@ -160,7 +170,7 @@ class ImagePane(Pane):
         self._tiled = tiled
         for copy in self._copies:
             self.view.removeItem(copy)
-        self._copies = [pg.ImageItem(levels=None) for _ in range(3)] if tiled else []
+        self._copies = [PictureItem() for _ in range(3)] if tiled else []
         for copy in self._copies:
             self.view.addItem(copy)
         self.set_picture(self._picture)
@@ -176,11 +186,11 @@ class ImagePane(Pane):
                 self._overlay = None
             return
         if self._overlay is None:
-            self._overlay = pg.ImageItem(levels=None)
+            self._overlay = PictureItem()
             self._overlay.setZValue(10)
             self.view.addItem(self._overlay)
         self._overlay.setOpacity(opacity)
-        self._overlay.setImage(picture, autoLevels=False, levels=None)
+        self._overlay.show_picture(picture, *self._seen(self._overlay))
 
     def set_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float] = (0.0, 0.0)) -> None:
         """Outline places of the picture; ``offset`` (row, column) is added to them."""
@@ -227,6 +237,7 @@ class ImagePane(Pane):
         super()._moved()
 
     def _choose_filter(self) -> None:
+        self._prepare()
         # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
         pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
         self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)

@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor
 
 from texlab.style.theme import configure_pyqtgraph
+from texlab.widgets.picture_item import PictureItem
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QEvent, QPoint
@@ -70,7 +71,7 @@ class Pane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
         self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMenu=False, defaultPadding=0)
         self.view.setMouseMode(pg.ViewBox.PanMode)
         self.setCentralItem(self.view)
-        self.item = pg.ImageItem(levels=None)
+        self.item = PictureItem()
         self.view.addItem(self.item, ignoreBounds=True)
         self.setMouseTracking(True)
         self.setMinimumSize(60, 60)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
 
+from texlab.docks.bands.middle import middle_of
 from texlab.docks.recent import Recent, Same
 from texlab.widgets.plain import set_tip, tip_text
 from texlab_core.errors import Cancelled
@@ -54,6 +55,10 @@ class BandCache:
     def __init__(self) -> None:
         self._recent = Recent(CACHE_BYTES, lambda bands: sum(band.plane.nbytes for band in bands))
 
+    def clear(self) -> None:
+        """Forget everything."""
+        self._recent.clear()
+
     def bands(
         self,
         image: FloatImage,
@@ -62,9 +67,9 @@ class BandCache:
         settings: PyramidSettings,
         should_stop: Callable[[], bool],
     ) -> tuple[Band, ...]:
-        """Return the subbands of an image's plane; principal axes are those of the exemplar.
+        """Return the subbands of an image's plane, of a large one those of its middle.
 
-        Raises ``Cancelled`` when ``should_stop`` says so.
+        Principal axes are those of the exemplar. Raises ``Cancelled`` when ``should_stop`` says so.
         """
 
         def look() -> None:
@@ -72,7 +77,7 @@ class BandCache:
                 raise Cancelled
 
         def make() -> tuple[Band, ...]:
-            plane = projection(exemplar, channel).plane(image)
+            plane = projection(middle_of(exemplar), channel).plane(middle_of(image))
             return split(plane, settings.kind, settings.levels, settings.orientations, look)
 
         return self._recent.get((Same(image), Same(exemplar), channel, settings), make)

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from texlab.docks.bands.comparison import Comparison, compare
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, PyramidSettings, channel_items
+from texlab.docks.bands.middle import middle_words
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
@@ -77,7 +78,9 @@ def _compare_bands(
     # A small image has fewer levels than were asked for: its residual stands for those that it lacks.
     found = first.get(key, next(reversed(first.values())))
     other = second[found.key].plane if found.key in second else None
-    return compare(f"{_plane_title(exemplar, channel)}, {found.title}", found.plane, other)
+    part = middle_words(exemplar)
+    title = ", ".join(filter(None, (_plane_title(exemplar, channel), found.title, part)))
+    return compare(title, found.plane, other)
 
 
 def _plane_title(exemplar: FloatImage, channel: Channel) -> str:
@@ -91,6 +94,7 @@ class HistogramsDock(FramedDock):
     title = "Histograms"
     help = "How pixels and subbands of exemplar and result are distributed."
     order = 20
+    heavy = True
     empty = "Histograms appear as soon as there is an exemplar."
 
     def build(self) -> None:
@@ -142,6 +146,11 @@ class HistogramsDock(FramedDock):
             return comparisons(exemplar, result.values(), settings, cache, should_stop)
 
         return Question((self.name, Same(exemplar), result.key, settings), compute)
+
+    def drop_kept(self) -> None:
+        """Empty the cache of subbands."""
+        super().drop_kept()
+        self._cache.clear()
 
     def show_answer(self, answer: tuple[Comparison, ...]) -> None:
         """Draw the distributions and fill in the numbers."""

@@ -47,6 +47,7 @@ class MosaicView(QWidget):
         set_tip(self, f"Subbands of the {title}: click one, or use the arrow keys, to see it large")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.name = title
         self.title = Label(title)
         self.title.setContentsMargins(2, 0, 0, 0)
         self.pane = PicturePane(f"{name}-pane", title)
@@ -91,6 +92,7 @@ class MosaicView(QWidget):
         if self._shown is None or shown.picture is not self._shown.picture:
             self.pane.set_picture(shown.picture)
         self._shown = shown
+        self.title.setText(f"{self.name}: {shown.part}" if shown.part else self.name)
         self._make_labels(len(shown.bands))
         self._words = []
         for label, band, cell in zip(self._labels, shown.bands, shown.layout.cells, strict=True):
@@ -101,6 +103,13 @@ class MosaicView(QWidget):
             label.setPos(cell.left, cell.top)
         self.select(self._selected)
         self._choose_labels()
+
+    def forget(self) -> None:
+        """Show nothing any more."""
+        self._shown, self._words = None, []
+        self._make_labels(0)
+        self.select(-1)
+        self.pane.set_picture(None)
 
     def select(self, index: int) -> None:
         """Mark a band, -1 for none, without telling anyone."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from texlab.docks.bands import mosaic
 from texlab.docks.bands.comparison import Comparison, compare
+from texlab.docks.bands.middle import middle_of, middle_words
 from texlab.docks.recent import Same
 from texlab.style.colouring import DIVERGING_TABLE, GRAY_TABLE, Scale, paint
 from texlab.style.pictures import to_picture
@@ -68,11 +69,12 @@ class PyramidRequest:
 
 @dataclass(frozen=True, eq=False)
 class MosaicPicture:
-    """All bands of one image in one picture."""
+    """All bands of one image in one picture; ``part`` says of which part of it, empty for all."""
 
     bands: tuple[Band, ...]
     layout: mosaic.Mosaic
     picture: Picture
+    part: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +105,11 @@ class PyramidPictures:
     def __init__(self, bands: BandCache, recent: Recent) -> None:
         self._bands = bands
         self._recent = recent
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._bands.clear()
+        self._recent.clear()
 
     def answer(
         self,
@@ -160,7 +167,7 @@ class PyramidPictures:
                 picture = colour_band(band, scales.get(band.key, scales[_last(scales)]))
                 pictures.append(mosaic.dim(picture, gap) if band.key in muted else picture)
             look()
-            return MosaicPicture(bands, layout, layout.draw(pictures, gap))
+            return MosaicPicture(bands, layout, layout.draw(pictures, gap), middle_words(image))
 
         # The bands are kept by the cache above, so their identity stands for image, plane and pyramid.
         return self._recent.get((Same(bands), tuple(scales.items()), looks), make)
@@ -169,6 +176,7 @@ class PyramidPictures:
         self, exemplar: FloatImage, request: PyramidRequest, look: Callable[[], None]
     ) -> tuple[Picture, Picture]:
         settings = request.settings
+        exemplar = middle_of(exemplar)
         changed = amplify(
             exemplar,
             settings.kind,

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QHBoxLayout, QSplitter, 
 from texlab.docks.bands import mosaic
 from texlab.docks.bands.controls import KINDS, BandCache, PyramidControls, channel_items
 from texlab.docks.bands.detail import BandDetail
+from texlab.docks.bands.middle import middle_of
 from texlab.docks.bands.mosaic_view import MosaicView
 from texlab.docks.bands.pictures import PyramidAnswer, PyramidPictures, PyramidRequest
 from texlab.docks.base import Question
@@ -49,6 +50,7 @@ class PyramidDock(FramedDock):
     title = "Pyramid"
     help = "The subbands of exemplar and result; mute or boost them and see what they carry."
     order = 10
+    heavy = True
     empty = "The pyramid appears as soon as there is an exemplar."
 
     def build(self) -> None:
@@ -147,7 +149,8 @@ class PyramidDock(FramedDock):
         result = self.looked_at(scene).with_channels(exemplar.shape[2])
         self.pyramid.follow(scene)
         replace_items(self.channel, channel_items(exemplar.shape[2]))
-        request = self._request(exemplar.shape[:2], has_result=result.channels > 0)
+        shape = middle_of(exemplar).shape[:2]
+        request = self._request(shape, has_result=result.channels > 0)
         if request.editing:
             result = LookedAt(None)
         pictures = self._pictures
@@ -272,7 +275,16 @@ class PyramidDock(FramedDock):
             return
         band = view.shown.bands[index]
         value = number(float(band.plane[row, column]))
-        self.readout.setText(f"{view.title.text()}, {band.title}, {column}, {row}: {value}")
+        self.readout.setText(f"{view.name}, {band.title}, {column}, {row}: {value}")
+
+    def drop_kept(self) -> None:
+        """Empty mosaics and caches."""
+        super().drop_kept()
+        self._pictures.clear()
+        for view in (self.exemplar, self.result):
+            view.forget()
+        for pane in (self.original, self.reconstruction):
+            pane.set_picture(None)
 
     # What the user does.
 

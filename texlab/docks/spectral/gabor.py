@@ -48,6 +48,7 @@ class GaborDock(FramedDock):
     title = "Gabor"
     help = "MSG's filter bank in the frequency plane, its channels, and local spatial frequency."
     order = 32
+    heavy = True
     empty = "Channels appear as soon as there is an exemplar."
 
     def build(self) -> None:

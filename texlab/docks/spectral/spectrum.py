@@ -57,6 +57,7 @@ class SpectrumDock(FramedDock):
     title = "Spectrum"
     help = "Power by frequency of exemplar and result, their peaks, and the centres to which MSG moves them."
     order = 30
+    heavy = True
     empty = "Spectra appear as soon as there is an exemplar."
 
     def build(self) -> None:
