@@ -106,6 +106,14 @@ def test_a_pane_prepares_what_it_shows(qtbot: Any, picture: Any) -> None:
     np.testing.assert_array_equal(beside.image, picture[top:bottom, left:right])
 
 
+def test_levels_are_painted_through_the_table_part_by_part(qapp: Any, picture: Any) -> None:
+    item, table = PictureItem(), np.arange(255, -1, -1).astype(np.uint8)
+    item.show_picture(picture, QRectF(20, 30, 16, 8), 0.25, table)
+    np.testing.assert_array_equal(item.image, 255 - picture[26:42, 12:44])
+    item.look(QRectF(60, 60, 16, 8), 0.25)
+    np.testing.assert_array_equal(item.image, 255 - picture[56:72, 52:84])
+
+
 # Subbands.
 
 
