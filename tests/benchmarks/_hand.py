@@ -96,7 +96,7 @@ def open_window(columns: int, *, solid: bool = False) -> Any:
     window = app.build(settings, themes)
     window.show()
     explorer = app.complete(window, settings, themes)
-    settings.values["session"] = {"seed": 1, "size": [256, 256]}
+    explorer.saved = {"seed": 1, "size": [256, 256]}
     names = ["de-bonet", "heeger-bergen", "msg", "efros-leung"][:columns]
     names = ["solid"] if solid else names
     explorer.start(None, columns=[(name, methods()[name].params()) for name in names])

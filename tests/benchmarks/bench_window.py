@@ -94,7 +94,7 @@ def window(
     shell.show()
     qtbot.waitExposed(shell)
     explorer = app.complete(shell, settings, themes)
-    settings.values["session"] = {"seed": 1, "size": [size, size]}
+    explorer.saved = {"seed": 1, "size": [size, size]}
     explorer.start(source, columns=[(name, methods()[name].params.from_json(more)) for name, more in columns])
     try:
         yield explorer

@@ -89,7 +89,7 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
         explorer = texlab_app.complete(window, settings, themes)
         opened.append(explorer)
         if columns is not None:
-            explorer.settings.values.setdefault("session", {"seed": 5, "size": [size, size]})
+            explorer.saved = explorer.saved or {"seed": 5, "size": [size, size]}
         explorer.start(source, columns=columns)
         if wait:
             wait_idle(qtbot, explorer)

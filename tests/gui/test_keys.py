@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
@@ -18,6 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+import texlab
 from tests.gui.conftest import ids, wait_idle
 from texlab.window.stops import is_seen, stops
 
@@ -64,6 +66,13 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
     assert {"New seed", "Run all", "Open image"} <= buttons
 
 
+def test_nobody_walks_the_chain_of_focus() -> None:
+    """PySide invalidates objects that live on (actions of menus, later) when it wraps the chain."""
+    folder = Path(texlab.__file__).parent
+    walkers = [path for path in folder.rglob("*.py") if re.search("InFocusChain", path.read_text())]
+    assert walkers == []
+
+
 def test_the_ring_goes_with_the_window(qtbot: Any, explorer: Explorer) -> None:
     """Qt hands the keyboard on while a window is hidden part by part."""
     window = explorer.window
@@ -87,6 +96,18 @@ def test_the_order_follows_the_eye(explorer: Explorer) -> None:
     assert places[0] == 0
 
 
+def test_tab_walks_through_the_columns_as_they_stand(explorer: Explorer) -> None:
+    def columns() -> list[str]:
+        found = [each.objectName() for each in stops(explorer.window, explorer.window.tab_order())]
+        return [name for name in found if name.startswith("method-")]
+
+    first, second = ids(explorer)
+    assert columns() == [f"method-{first}", f"method-{second}"]
+    explorer.session.move_column(second, -1)
+    explorer.presenter.show_scene(explorer.controller.scene())
+    assert columns() == [f"method-{second}", f"method-{first}"]
+
+
 def test_the_letters_of_every_menu_are_unique(explorer: Explorer) -> None:
     def check(menu: QMenu, name: str) -> None:
         letters = [
@@ -97,8 +118,10 @@ def test_the_letters_of_every_menu_are_unique(explorer: Explorer) -> None:
         twice = {letter for letter in letters if letters.count(letter) > 1}
         assert not twice, f"{name}: {', '.join(sorted(twice))}"
 
-    for name, menu in explorer.window.menus.items():
-        check(menu, name)
+    menus = explorer.window.findChildren(QMenu)
+    assert {*explorer.window.menus.values()} < {*menus}
+    for menu in menus:
+        check(menu, menu.title() or menu.objectName())
     check(explorer.window.menuBar(), "menu bar")  # type: ignore[arg-type]
 
 

@@ -142,14 +142,12 @@ def test_a_step_sets_everything_and_leaving_brings_everything_back(
 
 
 def test_what_is_saved_during_a_lesson_is_the_users_session(qtbot: Any, explorer: Explorer, small: str) -> None:
-    explorer.autosave.remember()
-    saved = dict(explorer.settings.values["session"])
+    saved = explorer.autosave.to_json()
     give(qtbot, explorer, small)
     wait_ready(qtbot, explorer)
-    explorer.autosave.remember()
-    assert explorer.settings.values["session"] == saved
+    assert explorer.autosave.to_json() == saved
     explorer.window.close()
-    assert explorer.settings.values["session"] == saved
+    assert json.loads(explorer.own.path.read_text()) == saved
 
 
 def test_a_ready_step_shows_what_was_kept_without_running_anything(

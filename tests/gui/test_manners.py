@@ -350,12 +350,9 @@ def test_changes_are_on_disk_before_the_window_closes(
 ) -> None:
     explorer.session.set_seed(123)
 
-    def saved() -> bool:
-        path = settings_file(texlab_home)
-        return path.exists() and json.loads(path.read_text())["session"]["seed"] == 123
-
-    qtbot.waitUntil(saved, timeout=10_000)
-    assert json.loads(settings_file(texlab_home).read_text())["session"]["sample"]["path"] == str(texture)
+    path = texlab_home / "config" / "sessions" / "1.json"
+    qtbot.waitUntil(lambda: path.exists() and json.loads(path.read_text())["seed"] == 123, timeout=10_000)
+    assert json.loads(path.read_text())["sample"]["path"] == str(texture)
     wait_idle(qtbot, explorer)
 
 

@@ -119,7 +119,7 @@ def test_a_code_comes_back_with_the_session(
     first = open_window(str(texture), [("msg", methods()["msg"].params())])
     drop(qtbot, first, code_file)
     first.close()
-    assert json.loads(json.dumps(first.settings.values))["session"]["columns"][0]["inputs"]["code"]
+    assert json.loads(first.own.path.read_text())["columns"][0]["inputs"]["code"]
     again = open_window(None)
     assert np.array_equal(result_image(again, ids(again)[0]), from_code(code_file))
 

@@ -151,7 +151,7 @@ def open_new(qtbot: Any, qapp: Any) -> Any:
             window.activateWindow()
         explorer = start.complete(window, settings, themes)
         opened.append(window)
-        settings.values["session"] = {"seed": 5, "size": [48, 48]}
+        explorer.saved = {"seed": 5, "size": [48, 48]}
         explorer.start(source, columns=columns)
         wait_idle(qtbot, explorer)
         return explorer

@@ -19,6 +19,7 @@ from texlab.storage.autosave import Autosave
 from texlab.storage.kept_exemplar import Kept, keep, kept_exemplar, load
 from texlab.storage.paths import config_dir, log_file
 from texlab.storage.reading import last_exemplar
+from texlab.storage.sessions import claim
 from texlab.storage.settings import Settings, columns_from_json, session_to_json
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
@@ -42,17 +43,20 @@ def state(seed: int) -> State:
 
 @pytest.fixture
 def autosave(qapp: Any, texlab_home: Path) -> Iterator[Autosave]:
-    settings, session = Settings(), Session()
-    made = Autosave(session, settings)
+    made = Autosave(Session(), Settings(), claim())
     yield made
     made.close()
 
 
 def write(autosave: Autosave, kept: State) -> None:
     """Write a session as the autosave does in its thread."""
-    autosave._settings.values["session"] = session_to_json(kept, 1)
     assert kept.sample is not None
-    autosave._write(autosave._settings.to_json(), kept.sample, kept)
+    autosave._write(dict(autosave._settings.values), session_to_json(kept, 1), kept.sample, kept)
+
+
+def on_disk() -> Any:
+    """Return the session that the next window would get."""
+    return json.loads((config_dir() / "sessions" / "1.json").read_text())
 
 
 def test_a_session_is_whole_whenever_the_program_ends(autosave: Autosave, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -64,7 +68,7 @@ def test_a_session_is_whole_whenever_the_program_ends(autosave: Autosave, monkey
         write(autosave, old)
 
     for _ in deaths(monkeypatch, prepare, lambda: write(autosave, new)):
-        saved = Settings().values["session"]
+        saved = on_disk()
         expected = {1: old, 2: new}[saved["seed"]]
         (choice,) = last_exemplar(saved)
         assert isinstance(choice.source, Kept)
@@ -82,16 +86,16 @@ def test_a_session_is_whole_whenever_the_program_ends(autosave: Autosave, monkey
     assert list(config_dir().rglob(".texlab-*")) == []
 
 
-def test_nothing_is_forgotten_when_the_settings_cannot_be_written(
+def test_nothing_is_forgotten_when_the_session_cannot_be_written(
     autosave: Autosave, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(autosave, state(1))
-    before = Settings().values["session"]
+    before = on_disk()
 
     def refuse(*_: Any) -> None:
         raise InputError("Full.")
 
-    monkeypatch.setattr("texlab.storage.settings.write_whole", refuse)
+    monkeypatch.setattr("texlab.storage.sessions.write_whole", refuse)
     write(autosave, state(2))
     (choice,) = last_exemplar(before)
     assert isinstance(choice.source, Kept)
@@ -214,6 +218,6 @@ def test_what_can_be_written_is(qapp: Any, texlab_home: Path) -> None:
 
 def test_settings_hold_what_they_held(texlab_home: Path) -> None:
     settings = Settings()
-    settings.values["session"] = {"deep": [[[{"x": [1, 2.5, None, True]}]]]}
-    assert settings.write(settings.to_json())
-    assert Settings().values == json.loads(settings.to_json())
+    settings.values["deep"] = [[[{"x": [1, 2.5, None, True]}]]]
+    assert settings.write(settings.values)
+    assert Settings().values == settings.values

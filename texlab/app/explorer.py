@@ -25,7 +25,8 @@ from texlab.storage.autosave import Autosave
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
-from texlab.storage.settings import columns_from_json, has_kept_inputs, seed_and_size
+from texlab.storage.sessions import claim, told_of_others
+from texlab.storage.settings import OLD_SESSION, columns_from_json, has_kept_inputs, seed_and_size
 from texlab.window.carrier import Carrier
 from texlab.window.exchange import Exchange
 from texlab.window.gallery_thumbnails import Thumbnails
@@ -78,7 +79,10 @@ class Explorer(QObject):
             self._show_several,
         )
         self.presets = PresetManager(window, window.parameters.presets)
-        self.autosave = Autosave(self.session, settings, self)
+        self.own = claim(settings.values.get(OLD_SESSION)) if settings.kept else None
+        self.saved: Any = None if self.own is None else self.own.saved
+        """The session of the last time."""
+        self.autosave = Autosave(self.session, settings, self.own, self)
         self.crash = CrashHandler(self)
         self.workspace = Workspace([(each.id, each.title) for each in methods().values()])
         self.overlays = Overlays(self.workspace.columns, self)
@@ -132,16 +136,18 @@ class Explorer(QObject):
         self._connect()
         self.thumbnails = Thumbnails(window.gallery, self)
         self.crash.install()
-        if settings.problem:
-            log.warning(settings.problem)
-            window.message_bar.tell(settings.problem, "problem")
+        if problem := " ".join(filter(None, (settings.problem, self.own.problem if self.own is not None else ""))):
+            log.warning(problem)
+            window.message_bar.tell(problem, "problem")
+        elif self.own is not None and (news := told_of_others(self.own.others, settings.values)):
+            window.message_bar.tell(news, "news")
         self._memory.start()
 
     # Start.
 
     def start(self, source: str | None, *, columns: Sequence[tuple[Any, ...]] | None = None) -> None:
         """Fill the window: the given image, or the last session, or the first texture."""
-        saved = self.settings.values.get("session")
+        saved = self.saved
         if columns or not has_kept_inputs(saved):
             self._fill(source, saved, columns or columns_from_json(saved))
             return

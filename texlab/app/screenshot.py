@@ -47,9 +47,8 @@ def screenshot(
     from texlab_core.files.whole import write_whole
 
     app = application()
-    settings = Settings()
-    settings.values = {}
-    settings.save = lambda: None  # type: ignore[method-assign]  # a picture changes no one's settings
+    # A picture changes no one's settings, and is no one's session.
+    settings = Settings(kept=False)
     themes = ThemeSource(theme_choice(theme))
     window = build(settings, themes)
     window.resize(*size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QMenu, QSizePolicy, QToolButton
 
@@ -15,6 +15,7 @@ from texlab.columns.foot import Foot
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.settling import Settling
 from texlab.widgets.short_box import ShortBox
 from texlab_core.engine.inputs import Crop
 from texlab_core.images.unit_range import use_of_alpha
@@ -110,10 +111,7 @@ class ExemplarView(Cell):
         self._box = self._make_box()
         self._name = ""
         self._crop: Crop | None = None
-        self._rest = QTimer(self)
-        self._rest.setSingleShot(True)
-        self._rest.setInterval(SETTLE_MS)
-        self._rest.timeout.connect(self._settle)
+        self._rest = Settling(self, SETTLE_MS, self._settle)
         self.pane.installEventFilter(self)
         self.choices = QToolButton()
         self.choices.setObjectName("exemplar-choices")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import reduce
-from itertools import pairwise
 from typing import TYPE_CHECKING, get_args
 
 from PySide6.QtWidgets import QWidget
@@ -47,9 +46,6 @@ class Grid(QWidget):
             if cell.parentWidget() is not self:
                 cell.setParent(self)
             cell.show()
-        # Tab walks through the columns as they stand.
-        for before, after in pairwise(cells):
-            QWidget.setTabOrder(before, after)
 
     def place(self, room: tuple[int, int]) -> None:
         """Give every cell its place in a room of this width and height."""

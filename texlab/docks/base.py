@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from texlab.widgets.control_settings import control_settings, take_control_settings
+from texlab.widgets.own_keys import OwnKeys
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from texlab.style.theme import Theme
 
 
-class Dock(QWidget):
+class Dock(OwnKeys, QWidget):
     """A tab below the images.
 
     A dock gets frozen data and sends frozen values; it holds no controller, worker or session, never computes and

@@ -11,6 +11,7 @@ from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.state.intentions import ShowStage
+from texlab.widgets.own_keys import is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from texlab.state.scene import Frame, Scene
 
+STAGES = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Home: -(10**6), Qt.Key.Key_End: 10**6}
 SPEEDS = ((1, "1 per second"), (2, "2 per second"), (4, "4 per second"), (10, "10 per second"))
 
 
@@ -135,17 +137,19 @@ class StepsDock(FramedDock):
         self.pause()
         super().hideEvent(event)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it scrubs or plays."""
+        return is_plain(event) and (event.key() in STAGES or event.key() == Qt.Key.Key_Space)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Scrub with the arrow keys, Home and End; play and pause with Space."""
-        steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Home: -(10**6), Qt.Key.Key_End: 10**6}
-        key = Qt.Key(event.key())
-        if key == Qt.Key.Key_Space:
-            self.toggle()
-        elif key in steps:
-            self.pause()
-            self.slider.setValue(self.slider.value() + steps[key])
-        else:
+        if not self.wants_key(event):
             super().keyPressEvent(event)
+        elif event.key() == Qt.Key.Key_Space:
+            self.toggle()
+        else:
+            self.pause()
+            self.slider.setValue(self.slider.value() + STAGES[Qt.Key(event.key())])
 
     def _take_speed(self) -> None:
         if self.playing:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from texlab.form.scales import Scale, box_step, decimals
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import tip_text
+from texlab.widgets.settling import Settling
 
 if TYPE_CHECKING:
     from texlab_core.engine.params import Field
@@ -80,10 +81,7 @@ class NumberKnob(KnobWidget):
         layout.addWidget(self.slider, 0, 0)
         layout.addWidget(self.box, 0, 1)
         layout.setColumnStretch(0, 1)
-        self._rest = QTimer(self)
-        self._rest.setSingleShot(True)
-        self._rest.setInterval(SETTLE_MS)
-        self._rest.timeout.connect(self._settled)
+        self._rest = Settling(self, SETTLE_MS, self._settled)
         self.slider.actionTriggered.connect(self._step)
         self.slider.valueChanged.connect(self._slider_moved)
         self.slider.sliderReleased.connect(self._settled)

@@ -14,7 +14,7 @@ from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
 from texlab.state.session import State
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name
-from texlab_core.documents.presets import Preset, read_preset
+from texlab_core.documents.presets import Preset, PresetError, read_preset
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -174,7 +174,7 @@ class PresetManager(QObject):
         if column is None:
             return
         exemplar = self._exemplar
-        current = self._bar.current
+        current, known = self._bar.current, {each.casefold() for each in self._own}
 
         def save(name: str, note: str, is_partial: bool) -> None:
             def work() -> Preset:
@@ -183,8 +183,8 @@ class PresetManager(QObject):
                     defaults = type(column.params)().to_json()
                     changed = {key: value for key, value in preset.parameters.items() if value != defaults[key]}
                     preset = dataclasses.replace(preset, parameters=changed)
-                # The dialog has said that one of this name is replaced.
-                self._store.save(preset, replace=True)
+                # The dialog has said that one is replaced, but of those only that another window has made since.
+                self._store.save(preset, replace=name.casefold() in known)
                 return preset
 
             self._do(work, f"Saved the preset {name}.")
@@ -259,7 +259,21 @@ class PresetManager(QObject):
         return dialog
 
     def _do(self, work: Callable[[], Any], said: str) -> None:
-        self._once(work, lambda value: self._done(value, said))
+        def attempt() -> Any:
+            try:
+                return work()
+            except PresetError as error:
+                return error
+
+        def done(value: Any) -> None:
+            if isinstance(value, PresetError):
+                # Another window may have changed the presets: that is seen then.
+                self.intention.emit(Tell(str(value), problem=True))
+                self.refresh()
+            else:
+                self._done(value, said)
+
+        self._once(attempt, done)
 
     def _done(self, value: Any, said: str) -> None:
         if isinstance(value, Preset):

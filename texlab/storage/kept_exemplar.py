@@ -14,6 +14,7 @@ from texlab_core.errors import InputError
 from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Container
     from pathlib import Path
 
     from texlab.state.session import Sample
@@ -75,10 +76,10 @@ def keep(image: ImageInput, folder: Path) -> Path:
     return path
 
 
-def forget_other_exemplars(wanted: str | None, folder: Path) -> None:
-    """Remove every kept exemplar but the one with this name."""
+def forget_other_exemplars(wanted: Container[str], folder: Path) -> None:
+    """Remove every kept exemplar whose name is not among these."""
     for path in folder.glob("exemplar*.np[yz]"):
-        if path.name != wanted and (path.name == FIRST_NAME or _NAME.fullmatch(path.name)):
+        if path.name not in wanted and (path.name == FIRST_NAME or _NAME.fullmatch(path.name)):
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:

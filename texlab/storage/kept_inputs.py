@@ -15,7 +15,7 @@ from texlab_core.errors import InputError
 from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -65,11 +65,10 @@ def keep_inputs(inputs: Iterable[Input], folder: Path) -> None:
             log.warning("The input %s could not be kept: %s", given.name, error)
 
 
-def forget_others(inputs: Iterable[Input], folder: Path) -> None:
-    """Remove the files of all other inputs."""
-    wanted = {f"{each.sha256}{SUFFIX}" for each in inputs}
+def forget_others(wanted: Container[str], folder: Path) -> None:
+    """Remove the files of all inputs whose hash is not among these."""
     for path in folder.glob(f"*{SUFFIX}"):
-        if path.name not in wanted and _HASH.fullmatch(path.stem):
+        if path.stem not in wanted and _HASH.fullmatch(path.stem):
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:

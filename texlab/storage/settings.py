@@ -10,6 +10,7 @@ from texlab.state.session import MAX_NAME
 from texlab.storage.kept_exemplar import file_name, has_no_home
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
+from texlab.storage.sessions import writing
 from texlab_core.engine.job import DEFAULT_SIZE, check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
 from texlab_core.errors import InputError
@@ -18,7 +19,7 @@ from texlab_core.files.regular import read_regular, reason
 from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from texlab.state.session import Column, State
     from texlab_core.engine.inputs import Input
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+RECENT = "recent"
+# Where versions with one session for all windows kept it.
+OLD_SESSION = "session"
 MAX_RECENT = 10
 MAX_BYTES = 2**25
 MAX_DEPTH = 64
@@ -38,24 +42,39 @@ MAX_COLUMNS = 100
 
 
 class Settings:
-    """A small JSON file that may be missing, old or broken: then the defaults hold."""
+    """A small JSON file that may be missing, old or broken: then the defaults hold.
 
-    def __init__(self) -> None:
+    All windows share it: only the values that this window has changed replace those in the file.
+
+    Parameters
+    ----------
+    kept
+        False for a window that neither reads nor writes it.
+    """
+
+    def __init__(self, *, kept: bool = True) -> None:
         self._path = config_dir() / "settings.json"
+        self.kept = kept
         self.values: dict[str, Any] = {}
         self.problem = ""
         try:
-            text = read_regular(self._path, MAX_BYTES)
-            loaded = strict_json.loads(text, max_bytes=MAX_BYTES, max_depth=MAX_DEPTH)
-            if not isinstance(loaded, dict):
-                raise InputError("It is no object.")
-            self.values = loaded
-        except FileNotFoundError:
-            pass
+            self.values = self._read() if kept else {}
         except OSError as error:
             self.problem = f"The settings could not be read ({reason(error)}); the defaults hold."
         except InputError:
             self._put_aside()
+        # What the file held when this window last read or wrote it.
+        self._known = dict(self.values)
+
+    def _read(self) -> dict[str, Any]:
+        try:
+            text = read_regular(self._path, MAX_BYTES)
+        except FileNotFoundError:
+            return {}
+        loaded = strict_json.loads(text, max_bytes=MAX_BYTES, max_depth=MAX_DEPTH)
+        if not isinstance(loaded, dict):
+            raise InputError("It is no object.")
+        return loaded
 
     def _put_aside(self) -> None:
         broken = self._path.with_suffix(".broken.json")
@@ -73,31 +92,50 @@ class Settings:
     @property
     def recent(self) -> list[str]:
         """Paths opened lately, the latest first."""
-        value = self.values.get("recent")
-        listed = value if isinstance(value, list) else []
-        return [path for path in listed if isinstance(path, str)][:MAX_RECENT]
+        return _recent(self.values)
 
     def add_recent(self, path: str) -> None:
         """Put a path first among the recent ones."""
-        self.values["recent"] = [path, *(other for other in self.recent if other != path)][:MAX_RECENT]
-
-    def to_json(self) -> str:
-        """Return what the file will hold."""
-        return json.dumps(self.values, indent=1)
+        self.values[RECENT] = [path, *(other for other in self.recent if other != path)][:MAX_RECENT]
 
     def save(self) -> None:
         """Write the file; a failure is logged, never shown: nothing the user made is lost by it."""
-        self.write(self.to_json())
+        self.write(dict(self.values))
 
-    def write(self, text: str) -> bool:
-        """Write this as the file, and return whether that could be done; may be called in any thread."""
+    def write(self, values: Mapping[str, Any]) -> bool:
+        """Write what has changed of these values, in one thread at a time, and return whether it was written."""
+        if not self.kept:
+            return True
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self._path, text.encode())
+            # Without the lock the file is whole all the same, and at worst lacks what another window just changed.
+            with writing("settings"):
+                merged = self._merged(values)
+                write_whole(self._path, json.dumps(merged, indent=1).encode())
         except (OSError, InputError) as error:
             log.warning("The settings could not be saved: %s", error)
             return False
+        self._known = dict(values)
         return True
+
+    def _merged(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        try:
+            merged = self._read()
+        except InputError:
+            merged = {}
+        for name in self._known.keys() - values.keys():
+            merged.pop(name, None)
+        theirs = _recent(merged)
+        merged |= {name: value for name, value in values.items() if self._known.get(name, self) != value}
+        if RECENT in merged:
+            merged[RECENT] = list(dict.fromkeys([*_recent(merged), *theirs]))[:MAX_RECENT]
+        return merged
+
+
+def _recent(values: Mapping[str, Any]) -> list[str]:
+    value = values.get(RECENT)
+    listed = value if isinstance(value, list) else []
+    return [path for path in listed if isinstance(path, str)][:MAX_RECENT]
 
 
 def session_to_json(state: State, selected: int) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import ink_on, paint
+from texlab.widgets.own_keys import OwnKeys, is_plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +28,7 @@ ARROWS = {
 }
 
 
-class HeatMap(QWidget):
+class HeatMap(OwnKeys, QWidget):
     """Cells with a colour and a number each; ``chosen`` and ``hovered`` tell (row, column), -1 for none."""
 
     chosen = Signal(int, int)
@@ -153,10 +154,14 @@ class HeatMap(QWidget):
         if (cell := self._cell_at(event)) is not None:
             self._choose(*cell)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it leads to another cell."""
+        return is_plain(event) and event.key() in ARROWS and bool(self._places.size)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move with the arrow keys."""
         step = ARROWS.get(Qt.Key(event.key()))
-        if step is None or not self._places.size:
+        if step is None or not self.wants_key(event):
             super().keyPressEvent(event)
             return
         row, column = self._selected or (0, 0)

@@ -6,6 +6,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFrame, QHeaderView, QTableWidget
 
+from texlab.widgets.own_keys import CopyKey
+
 
 def make_quiet(table: QTableWidget) -> None:
     """Make a table that is only read: no frame, no grid, columns as wide as their numbers; Tab leaves it."""
@@ -27,6 +29,7 @@ def make_copyable(table: QTableWidget) -> None:
     action.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
     action.triggered.connect(lambda: QApplication.clipboard().setText(table_text(table)))
     table.addAction(action)
+    CopyKey(table, action)
     table.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
 
 

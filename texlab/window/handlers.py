@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import secrets
+import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QPoint, Qt, QTimer
+from PySide6.QtCore import QObject, QPoint, QProcess, Qt, QTimer
 from PySide6.QtWidgets import QMenu
 
 from texlab.columns.history_popup import HistoryPopup
 from texlab.widgets.name_field import NameField
 from texlab.widgets.plain import set_tip
+from texlab.widgets.settling import settle_all
 from texlab.window.batch_desk import BatchDesk
 from texlab.window.export_desk import ExportDesk
 from texlab.window.popout_desk import PopoutDesk
@@ -73,6 +75,8 @@ class Handlers(QObject):
         self._turning.timeout.connect(lambda: self._session.finish_merge(self._turned))
         self._to_column = self._by_column()
         for name, handler in self._by_action().items():
+            # An edit that its last key has not ended yet would come back after an undo.
+            window.actions_by_name[name].triggered.connect(lambda _: settle_all(window))
             window.actions_by_name[name].triggered.connect(handler)
 
     def close(self) -> None:
@@ -115,6 +119,7 @@ class Handlers(QObject):
             "export-many": self.exports.open,
             "save-project": self.projects.save,
             "student-copy": partial(self.projects.save, for_student=True),
+            "another-window": self.open_another_window,
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,
@@ -157,6 +162,13 @@ class Handlers(QObject):
         self._tuning.set_active(layout == "tune")
         self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
         self._workspace.fit()
+
+    def open_another_window(self) -> None:
+        """Start the program once more, which takes a session that no window has."""
+        frozen = getattr(sys, "frozen", False)
+        started, _ = QProcess.startDetached(sys.executable, ["gui"] if frozen else ["-m", "texlab", "gui"])
+        if not started:
+            self._window.message_bar.tell("Another window could not be started.", "problem")
 
     def turn(self, what: str, change: Any) -> None:
         """Make ``change(merge=what)``: turns of a number box without a pause are one step of the history."""

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent
 
+    from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
     from texlab.state.session import Session
     from texlab.storage.settings import Settings
@@ -85,6 +86,7 @@ class MainWindow(QMainWindow):
         self.docks: dict[str, QDockWidget] = {}
         self.strip = PanelStrip(self, self.docks, settings)
         self.layouts = Layouts(self, self.docks, settings, themes, self.strip)
+        self._workspace: Workspace | None = None
         self._middle = QWidget()
         self.message_bar = MessageBar(self._middle)
         self._middle.setObjectName("middle")
@@ -131,8 +133,9 @@ class MainWindow(QMainWindow):
         self.resizeDocks([dock], [width], Qt.Orientation.Horizontal)
         self.docks[title.lower()] = dock
 
-    def set_workspace(self, workspace: QWidget) -> None:
+    def set_workspace(self, workspace: Workspace) -> None:
         """Put the images into the middle, and their zoom into the status bar."""
+        self._workspace = workspace
         self._middle_layout.replaceWidget(self._loading, workspace)
         self._loading.deleteLater()
         self._middle_layout.setStretchFactor(workspace, 1)
@@ -350,7 +353,9 @@ class MainWindow(QMainWindow):
     def tab_order(self) -> list[QWidget]:
         """Return the parts of the window in the order in which Tab goes through them."""
         docks = [dock for name, dock in self.docks.items() if name not in ("gallery", "parameters")]
-        return [self.toolbar, self.docks["gallery"], self._middle, self.docks["parameters"], *docks]
+        cells = () if self._workspace is None else self._workspace.grid.cells
+        first = (self.toolbar, self.docks["gallery"], self.lesson_bar)
+        return [*first, *cells, self._middle, self.docks["parameters"], *docks]
 
     def focusNextPrevChild(self, forward: bool) -> bool:
         """Go on to what is seen: never into a tab behind another one."""

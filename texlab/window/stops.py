@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEvent
 
 
+_BY_TAB = Qt.FocusPolicy.TabFocus.value
+
+
 def is_seen(widget: QWidget) -> bool:
     """Return whether any part of a widget can be seen, if need be after scrolling.
 
@@ -30,23 +33,21 @@ def is_seen(widget: QWidget) -> bool:
 
 def is_stop(widget: QWidget) -> bool:
     """Return whether Tab may stop at a widget."""
+    # Many are asked: what is quickly known comes first.
+    if not (widget.isVisible() and widget.focusPolicy().value & _BY_TAB and widget.isEnabled()):
+        return False
     # The arrows of a tab bar are for the mouse: the keyboard has the bar itself.
-    is_arrow = isinstance(widget.parentWidget(), QTabBar)
-    takes = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus) and not is_arrow
-    return takes and widget.isEnabled() and widget.focusProxy() is None and is_seen(widget)
+    return widget.focusProxy() is None and not isinstance(widget.parentWidget(), QTabBar) and is_seen(widget)
 
 
 def stops(window: QWidget, order: Sequence[QWidget]) -> list[QWidget]:
     """Return where Tab stops in a window: part after part in this order, then what lies in none of them."""
-    chain, each = [], window.nextInFocusChain()
-    while each is not None and each is not window:
-        chain.append(each)
-        each = each.nextInFocusChain()
 
     def place(widget: QWidget) -> int:
         return next((k for k, part in enumerate(order) if part is widget or part.isAncestorOf(widget)), len(order))
 
-    found = [widget for widget in chain if widget.window() is window and is_stop(widget)]
+    # Asking Qt for its chain of focus, widget by widget, makes Python take living objects for deleted ones.
+    found = [each for each in window.findChildren(QWidget) if is_stop(each) and each.window() is window]
     return sorted(found, key=place)
 
 

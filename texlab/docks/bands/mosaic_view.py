@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QGraphicsRectItem, QSizePolicy, QVBoxLayout, QWidget
 
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import pg
@@ -30,7 +31,7 @@ ARROWS: dict[Qt.Key, Direction] = {
 }
 
 
-class MosaicView(QWidget):
+class MosaicView(OwnKeys, QWidget):
     """Shows one mosaic.
 
     ``chosen(index)``: a band was clicked or reached with the arrow keys.
@@ -129,10 +130,16 @@ class MosaicView(QWidget):
             self._paint_label(label)
         self._paint_frame()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it leads to another band."""
+        key = Qt.Key(event.key())
+        leads = key in ARROWS or key in (Qt.Key.Key_Home, Qt.Key.Key_End)
+        return is_plain(event) and leads and self._shown is not None
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Go to the next band in the direction of an arrow key, to the first or to the last."""
         key = Qt.Key(event.key())
-        if self._shown is None or (key not in ARROWS and key not in (Qt.Key.Key_Home, Qt.Key.Key_End)):
+        if self._shown is None or not self.wants_key(event):
             super().keyPressEvent(event)
             return
         last = len(self._shown.bands) - 1

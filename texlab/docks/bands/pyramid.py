@@ -18,6 +18,7 @@ from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, LookedAt, replace_items
 from texlab.docks.recent import Recent, Same
 from texlab.style.numbers import number
+from texlab.widgets.own_keys import is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.view_link import ViewLink
@@ -330,14 +331,23 @@ class PyramidDock(FramedDock):
         self._check_gain()
         self.ask()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it closes the large band, edits, or sets the gain of the chosen band."""
+        if not is_plain(event):
+            return False
+        if event.key() == Qt.Key.Key_Escape:
+            return self.detail.isVisible()
+        if event.key() == Qt.Key.Key_E:
+            return self.edit.isEnabled()
+        return self.edit.isChecked() and event.text() in {text for _, _, text in GAINS}
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Esc closes the large band; E edits; 0, 1, 2, 4 set the gain of the chosen band in edit mode."""
-        key = Qt.Key(event.key())
-        if key == Qt.Key.Key_Escape and self.detail.isVisible():
-            self._close_detail()
-        elif key == Qt.Key.Key_E and self.edit.isEnabled():
-            self.edit.toggle()
-        elif self.edit.isChecked() and event.text() in {text for _, _, text in GAINS}:
-            self._set_gain(float(event.text()))
-        else:
+        if not self.wants_key(event):
             super().keyPressEvent(event)
+        elif event.key() == Qt.Key.Key_Escape:
+            self._close_detail()
+        elif event.key() == Qt.Key.Key_E:
+            self.edit.toggle()
+        else:
+            self._set_gain(float(event.text()))

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import HISTOGRAM_TABLES, paint
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import set_tip
 from texlab_core.stats.dependence import AXES
 
@@ -41,7 +42,7 @@ UNITS = {
 }
 
 
-class JointView(QWidget):
+class JointView(OwnKeys, QWidget):
     """Shows a histogram, low values on the left and below.
 
     ``brushed(rectangle)``: the cells that the user chose, first and last row and column, or None for none.
@@ -214,7 +215,7 @@ class JointView(QWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move or extend what is chosen, or let go."""
         key = Qt.Key(event.key())
-        if not self._wants(event):
+        if not self.wants_key(event):
             super().keyPressEvent(event)
         elif key == Qt.Key.Key_Escape:
             self._choose(None)
@@ -228,20 +229,12 @@ class JointView(QWidget):
                 self._anchor = cell
             self._span(cell)
 
-    def event(self, event: QEvent) -> bool:
-        """Keep the keys that the window would take otherwise."""
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and self._wants(event):
-            event.accept()
-            return True
-        return super().event(event)
-
-    def _wants(self, event: QKeyEvent) -> bool:
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves or extends what is chosen, or lets go of it."""
         key = Qt.Key(event.key())
-        if self._found is None:
+        if self._found is None or not is_plain(event):
             return False
-        others = ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
-        plain = event.modifiers() & others == Qt.KeyboardModifier.NoModifier
-        return plain and (key in ARROWS or (key == Qt.Key.Key_Escape and self._brush is not None))
+        return key in ARROWS or (key == Qt.Key.Key_Escape and self._brush is not None)
 
     def _span(self, cell: tuple[int, int]) -> None:
         assert self._anchor is not None

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.image_pane import MARK_COLOURS
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class Tile:
     chosen: int
 
 
-class LevelsView(QWidget):
+class LevelsView(OwnKeys, QWidget):
     """Shows tiles, one of them selected, and one place of it.
 
     ``selected(tile, place)``: clicked, or reached with the arrow keys. ``pointed(tile, place)``: the place under
@@ -177,10 +178,15 @@ class LevelsView(QWidget):
         if tile >= 0:
             self._select(tile, place if place >= 0 else self._tiles[tile].chosen)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it selects another tile or place."""
+        key = Qt.Key(event.key())
+        return is_plain(event) and bool(self._tiles) and (key in STEPS or key == Qt.Key.Key_Home)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Select another tile or another place; Home goes back to the one that was taken."""
         key = Qt.Key(event.key())
-        if not self._tiles or (key not in STEPS and key != Qt.Key.Key_Home):
+        if not self.wants_key(event):
             super().keyPressEvent(event)
         elif key == Qt.Key.Key_Home:
             self._select(self._tile, self._tiles[self._tile].chosen)

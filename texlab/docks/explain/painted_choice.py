@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from texlab.widgets.own_keys import OwnKeys, is_plain
+
 if TYPE_CHECKING:
     from PySide6.QtGui import QKeyEvent, QMouseEvent
 
     from texlab.style.theme import Theme
 
 
-class PaintedChoice(QWidget):
+class PaintedChoice(OwnKeys, QWidget):
     """Parts that are pointed at and chosen by mouse and keyboard.
 
     ``chosen(index)`` and ``hovered(index)`` tell a part, -1 for none.
@@ -76,13 +78,17 @@ class PaintedChoice(QWidget):
         if (index := self._at(event.position())) >= 0:
             self._choose(index)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it leads to another part."""
+        return is_plain(event) and bool(self.descriptions()) and self.reached(Qt.Key(event.key())) is not None
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Choose another part."""
-        wanted, last = self.reached(Qt.Key(event.key())), len(self.descriptions()) - 1
-        if wanted is None or last < 0:
+        wanted = self.reached(Qt.Key(event.key()))
+        if wanted is None or not self.wants_key(event):
             super().keyPressEvent(event)
         else:
-            self._choose(min(max(wanted, 0), last))
+            self._choose(min(max(wanted, 0), len(self.descriptions()) - 1))
 
     def _choose(self, index: int) -> None:
         self.select(index)

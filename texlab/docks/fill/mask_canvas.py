@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QKeyEvent, QKeySequence, QMouseEvent, QPainter, QPolygonF
 
 from texlab.docks.fill.strokes import Box, marked_box, stroke_box, stroke_lasso, stroke_line, united
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plots import pg
 
@@ -22,6 +23,12 @@ if TYPE_CHECKING:
 Tool = Literal["brush", "rubber", "rectangle", "lasso"]
 MOST_UNDO = 50
 DEFAULT_RADIUS = 8
+ARROWS = {
+    Qt.Key.Key_Left: (0, -1),
+    Qt.Key.Key_Right: (0, 1),
+    Qt.Key.Key_Up: (-1, 0),
+    Qt.Key.Key_Down: (1, 0),
+}
 _WASH = QColor(255, 60, 120)
 _WASH_ALPHA = 150
 
@@ -68,7 +75,7 @@ class WashItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no typ
             painter.drawPolyline(QPolygonF([QPointF(column, row) for row, column in self.outline]))
 
 
-class MaskCanvas(PicturePane):
+class MaskCanvas(OwnKeys, PicturePane):
     """Shows a picture with its mask; the left button paints, the wheel zooms, the middle button moves.
 
     ``changed()`` after every stroke; ``menu_wanted(place)`` for the menu of the right button. The arrow keys move
@@ -183,32 +190,26 @@ class MaskCanvas(PicturePane):
         self.menu_wanted.emit(event.globalPos())
         event.accept()
 
-    def event(self, event: QEvent) -> bool:
-        """Keep the keys of undo and redo: a stroke is taken back here before anything else is."""
-        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride and _stroke_key(event):
-            event.accept()
-            return True
-        return bool(super().event(event))
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves the brush, paints, or takes a stroke back (before anything else is)."""
+        moves = event.key() in ARROWS or event.key() == Qt.Key.Key_Space
+        return _stroke_key(event) is not None or (is_plain(event) and moves and self.picture is not None)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move with the arrow keys, paint with the space bar, take strokes back with the keys of undo."""
         back = _stroke_key(event)
-        if back is not None:
+        step = ARROWS.get(Qt.Key(event.key()))
+        if not self.wants_key(event):
+            super().keyPressEvent(event)
+        elif back is not None:
             (self.undo if back == "undo" else self.redo)()
-            return
-        steps = {
-            Qt.Key.Key_Left: (0, -1), Qt.Key.Key_Right: (0, 1), Qt.Key.Key_Up: (-1, 0), Qt.Key.Key_Down: (1, 0),
-        }  # fmt: skip
-        step = steps.get(Qt.Key(event.key()))
-        if step is not None and self.picture is not None:
+        elif step is not None:
             height, width = self.shares.shape
             row, column = self._cursor[0] + step[0] * self.radius, self._cursor[1] + step[1] * self.radius
             self._cursor = (min(max(row, 0), height - 1), min(max(column, 0), width - 1))
-        elif event.key() == Qt.Key.Key_Space and self.picture is not None:
+        else:
             self._begin((self._cursor[0] + 0.5, self._cursor[1] + 0.5))
             self._end()
-        else:
-            super().keyPressEvent(event)
 
     def _place(self, event: QMouseEvent) -> tuple[float, float]:
         point = self.view_place(event.position().toPoint())

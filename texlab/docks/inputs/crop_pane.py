@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.picture_area import PictureArea
 from texlab_core.engine.inputs import Crop
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 SMALLEST = 8
 
 
-class CropPane(PictureArea):
+class CropPane(OwnKeys, PictureArea):
     """Shows a source and the part of it that is used; ``cropped(Crop or None)`` when another one was drawn."""
 
     cropped = Signal(object)
@@ -97,9 +98,13 @@ class CropPane(PictureArea):
         """Use the whole picture."""
         self._whole()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it takes the crop away."""
+        return is_plain(event) and event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Use the whole picture."""
-        if event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
+        if self.wants_key(event):
             self._whole()
         else:
             super().keyPressEvent(event)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QTimer
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMenu, QPushButton
 
@@ -20,6 +19,7 @@ from texlab.style.pictures import to_picture
 from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.pasted import Pasted, pixels_of
 from texlab.widgets.picture_area import PictureArea
+from texlab.widgets.settling import Settling
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.engine.registry import EXEMPLAR, InputSpec, find_method
 from texlab_core.images.formats.kinds import READABLE_SUFFIXES
@@ -90,10 +90,7 @@ class InputsDock(FramedDock):
         layout.addWidget(self.used, 1)
         self.source.cropped.connect(self._crop)
         self.setAcceptDrops(True)
-        self._settled = QTimer(self)
-        self._settled.setSingleShot(True)
-        self._settled.setInterval(SETTLE_MS)
-        self._settled.timeout.connect(self._take_scale)
+        self._settled = Settling(self, SETTLE_MS, self._take_scale)
         self._filling = False
         self._show_controls(None)
 

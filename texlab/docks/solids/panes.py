@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.picture_area import CAPTION, PictureArea
 
 if TYPE_CHECKING:
@@ -20,9 +21,21 @@ _NOTCH = 120
 _TURN_DEGREES = 0.5
 _KEY_DEGREES = 10.0
 _ZOOM = 1.1
+_MOVES = {
+    Qt.Key.Key_Left: (0, -1),
+    Qt.Key.Key_Right: (0, 1),
+    Qt.Key.Key_Up: (-1, 0),
+    Qt.Key.Key_Down: (1, 0),
+}
+_TURNS = {
+    Qt.Key.Key_Left: (-_KEY_DEGREES, 0.0),
+    Qt.Key.Key_Right: (_KEY_DEGREES, 0.0),
+    Qt.Key.Key_Up: (0.0, -_KEY_DEGREES),
+    Qt.Key.Key_Down: (0.0, _KEY_DEGREES),
+}
 
 
-class SlicePane(PictureArea):
+class SlicePane(OwnKeys, PictureArea):
     """A slice with its cross-hair: dragging moves it, the wheel goes through the slices.
 
     ``moved(row, column)`` tells where the cross-hair shall be in this picture, ``stepped(by)`` how many slices to
@@ -100,29 +113,28 @@ class SlicePane(PictureArea):
             self.stepped.emit(-steps)
         event.accept()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves the cross-hair or goes through the slices."""
+        key, others = Qt.Key(event.key()), (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown, Qt.Key.Key_Home)
+        return is_plain(event) and (key in _MOVES or key in others)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move by the keyboard."""
         row, column = self.cross
-        ways = {
-            Qt.Key.Key_Left: (0, -1),
-            Qt.Key.Key_Right: (0, 1),
-            Qt.Key.Key_Up: (-1, 0),
-            Qt.Key.Key_Down: (1, 0),
-        }
         key = Qt.Key(event.key())
-        if key in ways:
+        if not self.wants_key(event):
+            super().keyPressEvent(event)
+        elif key in _MOVES:
             height, width = self.shape
-            down, right = ways[key]
+            down, right = _MOVES[key]
             self.moved.emit(min(max(row + down, 0), height - 1), min(max(column + right, 0), width - 1))
         elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
             self.stepped.emit(1 if key == Qt.Key.Key_PageDown else -1)
-        elif key == Qt.Key.Key_Home:
-            self.moved.emit(self.shape[0] // 2, self.shape[1] // 2)
         else:
-            super().keyPressEvent(event)
+            self.moved.emit(self.shape[0] // 2, self.shape[1] // 2)
 
 
-class ObjectPane(PictureArea):
+class ObjectPane(OwnKeys, PictureArea):
     """A shaded object: ``turned(yaw, pitch)`` in degrees, ``zoomed(factor)``, ``released()`` after a drag."""
 
     turned = Signal(float, float)
@@ -172,20 +184,19 @@ class ObjectPane(PictureArea):
         self.zoomed.emit(_ZOOM ** (event.angleDelta().y() / _NOTCH))
         event.accept()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it turns the object or brings it nearer."""
+        key, others = Qt.Key(event.key()), (Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Home)
+        return is_plain(event) and (key in _TURNS or key in others)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Turn it by the keyboard."""
-        ways = {
-            Qt.Key.Key_Left: (-_KEY_DEGREES, 0.0),
-            Qt.Key.Key_Right: (_KEY_DEGREES, 0.0),
-            Qt.Key.Key_Up: (0.0, -_KEY_DEGREES),
-            Qt.Key.Key_Down: (0.0, _KEY_DEGREES),
-        }
         key = Qt.Key(event.key())
-        if key in ways:
-            self.turned.emit(*ways[key])
+        if not self.wants_key(event):
+            super().keyPressEvent(event)
+        elif key in _TURNS:
+            self.turned.emit(*_TURNS[key])
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Minus):
             self.zoomed.emit(_ZOOM if key == Qt.Key.Key_Plus else 1 / _ZOOM)
-        elif key == Qt.Key.Key_Home:
-            self.homed.emit()
         else:
-            super().keyPressEvent(event)
+            self.homed.emit()

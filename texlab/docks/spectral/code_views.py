@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.widgets.heat_map import HeatMap
+from texlab.widgets.own_keys import OwnKeys, begins_number, is_plain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +28,9 @@ KEYS = {
     Qt.Key.Key_PageUp: 5,
     Qt.Key.Key_PageDown: -5,
 }
+OTHERS = (Qt.Key.Key_Delete, Qt.Key.Key_Backspace, Qt.Key.Key_Return, Qt.Key.Key_Enter)
+SIDEWAYS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
+UPWARDS = {Qt.Key.Key_Up: 1, Qt.Key.Key_Down: -1}
 
 
 def steps_of(event: QKeyEvent) -> int:
@@ -34,9 +38,9 @@ def steps_of(event: QKeyEvent) -> int:
     return KEYS.get(Qt.Key(event.key()), 0)
 
 
-def is_number(text: str) -> bool:
-    """Return whether a typed character begins a number."""
-    return len(text) == 1 and (text.isdigit() or text in ".,")
+def changes_number(event: QKeyEvent) -> bool:
+    """Return whether a key changes the chosen number, empties it or begins to type one."""
+    return begins_number(event) or (is_plain(event) and (event.key() in KEYS or event.key() in OTHERS))
 
 
 class CodeGrid(HeatMap):
@@ -99,19 +103,21 @@ class CodeGrid(HeatMap):
             if self._moved:
                 self.dropped.emit()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves, changes the chosen cell, or begins a number."""
+        return (self.place >= 0 and changes_number(event)) or super().wants_key(event)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Change the chosen cell by + and -, empty it by Delete, begin a number by a digit."""
         steps = steps_of(event)
-        if self.place < 0:
+        if self.place < 0 or not changes_number(event):
             super().keyPressEvent(event)
         elif steps:
             self.nudged.emit(self.place, steps)
         elif event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
             self.emptied.emit(self.place)
-        elif is_number(event.text()) or event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.typed.emit(self.place, event.text() if is_number(event.text()) else "")
         else:
-            super().keyPressEvent(event)
+            self.typed.emit(self.place, event.text() if begins_number(event) else "")
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the cells, and a corner in those that were changed."""
@@ -131,7 +137,7 @@ class CodeGrid(HeatMap):
         return row * int(self._places.shape[1]) + column
 
 
-class HistogramBars(QWidget):
+class HistogramBars(OwnKeys, QWidget):
     """Sixteen bars that follow the mouse; moving it sideways draws over several.
 
     ``dragged({place: value})`` in the unit of the bars, ``dropped()`` at the end; the keyboard as in
@@ -271,23 +277,26 @@ class HistogramBars(QWidget):
         super().leaveEvent(event)
         self.hovered.emit(-1)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves, changes the chosen bar, or begins a number."""
+        if is_plain(event) and event.key() in SIDEWAYS:
+            return bool(self._values.size)
+        return self._place >= 0 and (changes_number(event) or (is_plain(event) and event.key() in UPWARDS))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Go to another bar by left and right, change it by + and - or up and down, empty it by Delete."""
         key = Qt.Key(event.key())
-        sideways = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}.get(key, 0)
-        steps = steps_of(event) or {Qt.Key.Key_Up: 1, Qt.Key.Key_Down: -1}.get(key, 0)
-        if sideways and self._values.size:
-            self._choose(min(max(self._place + sideways, 0), len(self._values) - 1))
-        elif self._place < 0:
+        steps = steps_of(event) or UPWARDS.get(key, 0)
+        if not self.wants_key(event):
             super().keyPressEvent(event)
+        elif key in SIDEWAYS:
+            self._choose(min(max(self._place + SIDEWAYS[key], 0), len(self._values) - 1))
         elif steps:
             self.nudged.emit(self._place, steps)
         elif key in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
             self.emptied.emit(self._place)
-        elif is_number(event.text()) or key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.typed.emit(self._place, event.text() if is_number(event.text()) else "")
         else:
-            super().keyPressEvent(event)
+            self.typed.emit(self._place, event.text() if begins_number(event) else "")
 
     def _choose(self, place: int) -> None:
         self._place = place

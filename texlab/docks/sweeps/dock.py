@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
@@ -33,6 +32,8 @@ from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
+
+    from PySide6.QtGui import QKeyEvent
 
     from texlab.state.scene import ColumnScene, Scene
     from texlab.state.sweeps import ShownCell, SweepScene
@@ -89,11 +90,24 @@ class SweepsDock(FramedDock):
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self.panel)
         layout.addLayout(right, 1)
-        for keys, act in (("Ctrl+Return", self.start), ("Escape", self.stop)):
-            shortcut = QShortcut(QKeySequence(keys), self)
-            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            shortcut.activated.connect(act)
         self._show_state()
+
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it starts the sweep, or stops it while it runs."""
+        held = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            return held == Qt.KeyboardModifier.ControlModifier
+        plain = held == Qt.KeyboardModifier.NoModifier
+        return event.key() == Qt.Key.Key_Escape and plain and self.running
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Start and stop."""
+        if not self.wants_key(event):
+            super().keyPressEvent(event)
+        elif event.key() == Qt.Key.Key_Escape:
+            self.stop()
+        else:
+            self.start()
 
     @property
     def sweep(self) -> Sweep | None:

@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QHelpEvent, QImage, 
 from PySide6.QtWidgets import QFrame, QMenu, QScrollArea, QWidget
 
 from texlab.style.theme import DARK
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import show_tip
 
 if TYPE_CHECKING:
@@ -31,6 +32,16 @@ if TYPE_CHECKING:
 
 SMALLEST, USUAL, LARGEST = 48, 112, 384
 _GAP = 10
+MOVES = (
+    Qt.Key.Key_Left,
+    Qt.Key.Key_Right,
+    Qt.Key.Key_Up,
+    Qt.Key.Key_Down,
+    Qt.Key.Key_Home,
+    Qt.Key.Key_End,
+)
+OPENS = (Qt.Key.Key_N, Qt.Key.Key_K)
+TAKES = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
 NARROWEST = 76
 
 
@@ -154,7 +165,7 @@ class ContactSheetView(QScrollArea):
         self.canvas.relayout()
 
 
-class _Canvas(QWidget):
+class _Canvas(OwnKeys, QWidget):
     """Paints only the cells that can be seen."""
 
     def __init__(self, view: ContactSheetView, empty: str) -> None:
@@ -465,8 +476,18 @@ class _Canvas(QWidget):
         else:
             super().wheelEvent(event)
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves, takes or zooms."""
+        key, zooms = event.key(), (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus)
+        if not is_plain(event):
+            return False
+        return key in zooms or (bool(self.settings) and (key in MOVES or key in TAKES or key in OPENS))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move with the arrows, Home and End; take with Return or Space, N opens, K keeps, + and - zoom."""
+        if not self.wants_key(event):
+            super().keyPressEvent(event)
+            return
         key = Qt.Key(event.key())
         last, at = len(self.order) - 1, self._places.get(self.current, 0)
         moves = {
@@ -480,16 +501,14 @@ class _Canvas(QWidget):
         if key in moves:
             if 0 <= moves[key] <= last:
                 self._go(self.order[moves[key]])
-        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):
+        elif key in TAKES:
             self._tell(self._view.taken, self.current)
         elif key == Qt.Key.Key_N:
             self._tell(self._view.opened, self.current)
         elif key == Qt.Key.Key_K:
             self._tell(self._view.kept, self.current)
-        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self._view.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
         else:
-            super().keyPressEvent(event)
+            self._view.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
 
     def event(self, event: QEvent) -> bool:
         """Show the whole text of a cell as its tooltip."""

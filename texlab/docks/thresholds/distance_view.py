@@ -6,14 +6,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.docks.thresholds.table import SoftLog, cell_text, rounded
 from texlab.form.knobs import SETTLE_MS
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import set_tip
+from texlab.widgets.settling import Settling
 from texlab_core.methods.de_bonet.distances import feature_distances, passing_share
 
 if TYPE_CHECKING:
@@ -64,7 +66,7 @@ class Distances:
         return passing_share(self.values, threshold)
 
 
-class DistanceView(QWidget):
+class DistanceView(OwnKeys, QWidget):
     """Shows the distances of one cell; ``edited(threshold, final)`` while the line is dragged or moved by keys."""
 
     edited = Signal(float, bool)
@@ -85,10 +87,7 @@ class DistanceView(QWidget):
         self._distances: Distances | None = None
         self._threshold = 0.0
         self._dragging = False
-        self._settle = QTimer(self)
-        self._settle.setSingleShot(True)
-        self._settle.setInterval(SETTLE_MS)
-        self._settle.timeout.connect(self.settle)
+        self._settle = Settling(self, SETTLE_MS, self.settle)
 
     @property
     def threshold(self) -> float:
@@ -172,10 +171,14 @@ class DistanceView(QWidget):
         if self._dragging:
             self.settle()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it moves the line."""
+        return is_plain(event) and event.key() in STEPS
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move the line."""
         step = STEPS.get(Qt.Key(event.key()))
-        if step is None:
+        if step is None or not self.wants_key(event):
             super().keyPressEvent(event)
             return
         place = float(SCALE.place(self._threshold)) + step
@@ -242,11 +245,3 @@ class DistanceView(QWidget):
         painter.setBrush(wash)
         painter.drawPolygon(shape)
         painter.restore()
-
-    def event(self, event: QEvent) -> bool:
-        """Keep the arrow keys."""
-        if not (event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent)):
-            return super().event(event)
-        if Qt.Key(event.key()) in STEPS:
-            event.accept()
-        return True

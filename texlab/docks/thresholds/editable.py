@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QRectF, Qt, QTimer, Signal
+from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 from PySide6.QtWidgets import QLineEdit, QWidget
 
@@ -14,6 +14,7 @@ from texlab.docks.thresholds.table import cell_text, changed, mirrored, moved, r
 from texlab.form.knobs import SETTLE_MS
 from texlab.style.numbers import parse_number
 from texlab.widgets.plain import set_tip
+from texlab.widgets.settling import Settling
 from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 
 if TYPE_CHECKING:
@@ -41,10 +42,7 @@ class EditableTable(TableMap):
     def __init__(self, name: str, parent: QWidget | None = None) -> None:
         super().__init__(name, "Threshold table", parent=parent)
         self._selection = Selection.cell(0, 0)
-        self._settle = QTimer(self)
-        self._settle.setSingleShot(True)
-        self._settle.setInterval(SETTLE_MS)
-        self._settle.timeout.connect(self._settled)
+        self._settle = Settling(self, SETTLE_MS, self._settled)
         self._entry = QLineEdit(self)
         self._entry.setObjectName(f"{name}-entry")
         self._entry.setAccessibleName("Value of the selected cells")

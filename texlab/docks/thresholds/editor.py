@@ -11,6 +11,7 @@ from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QMouseEvent
 from texlab.docks.thresholds.editable import EditableTable
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import changed, moved, rounded
+from texlab.widgets.own_keys import OwnKeys, begins_number, is_plain
 from texlab.widgets.plain import set_tip, show_tip
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class _Drag:
     travel: float = 0.0
 
 
-class TableEditor(EditableTable):
+class TableEditor(OwnKeys, EditableTable):
     """Edits a threshold table.
 
     ``painting_changed(on)``: the mouse paints, or drags. ``picked(value)``: a value was picked with Alt+click.
@@ -220,10 +221,7 @@ class TableEditor(EditableTable):
     # Keyboard.
 
     def event(self, event: QEvent) -> bool:
-        """Take the keys that the window would take otherwise; say what is under the cursor."""
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and self._wants(event):
-            event.accept()
-            return True
+        """Say what is under the cursor."""
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent) and self._view is not None:
             place = self.at(event.pos().x(), event.pos().y())
             if place is not None and min(place) >= 0:
@@ -244,18 +242,20 @@ class TableEditor(EditableTable):
         """Let tool tips say more about cells."""
         self._more = more
 
-    def _wants(self, event: QKeyEvent) -> bool:
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it selects, changes, or begins a number."""
         key = Qt.Key(event.key())
-        if key in ARROWS or any(map(event.matches, SEQUENCES)):
+        if self._view is None:
+            return False
+        control = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier == Qt.KeyboardModifier.ControlModifier
+        if (key in ARROWS and (control or is_plain(event))) or any(map(event.matches, SEQUENCES)):
             return True
-        others = ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
-        plain = event.modifiers() & others == Qt.KeyboardModifier.NoModifier
-        return plain and (key in STEPS or key in self._keys or _starts_number(event.text()))
+        return begins_number(event) or (is_plain(event) and (key in STEPS or key in self._keys))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move, change, type, reset, lock, mirror."""
         key = Qt.Key(event.key())
-        if self._view is None or not self._wants(event):
+        if not self.wants_key(event):
             super().keyPressEvent(event)
         elif event.matches(QKeySequence.StandardKey.SelectAll):
             self.select_all()
@@ -297,7 +297,3 @@ class TableEditor(EditableTable):
                 self._move(*ARROWS[key], extend=False)
                 return True
         return super().eventFilter(watched, event)
-
-
-def _starts_number(text: str) -> bool:
-    return len(text) == 1 and (text.isdigit() or text in ".,")

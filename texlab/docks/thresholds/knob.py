@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from texlab.docks.thresholds.map import TableMap
 from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view
 from texlab.form.knobs import KnobWidget, register_editor
+from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 DOCK = "thresholds"
 
 
-class _Map(TableMap):
+class _Map(OwnKeys, TableMap):
     """The small heat map: a double click or Return opens the large one."""
 
     def __init__(self, field: Field, knob: ThresholdKnob) -> None:
@@ -33,9 +34,13 @@ class _Map(TableMap):
         """Open the large table."""
         self._knob.open_dock()
 
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Return whether it opens the large table."""
+        return is_plain(event) and event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Open the large table."""
-        if Qt.Key(event.key()) in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):
+        if self.wants_key(event):
             self._knob.open_dock()
         else:
             super().keyPressEvent(event)
