@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from texlab.runs import column_run
-from texlab.runs.column_run import Finished, key_of
+from texlab.runs.column_run import Finished, Measured, MeasureRun, key_of
 from texlab.runs.kept_results import KeptResults
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
@@ -115,3 +115,44 @@ def test_the_key_of_a_column_is_that_of_its_job(explorer: Explorer) -> None:
     for column in state.columns:
         job = explorer.controller.column_scene(column.id).result.job
         assert key_of(column, state, exemplar) == job.key
+
+
+def test_what_was_measured_is_not_measured_again(
+    qtbot: Any, explorer: Explorer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+    real = MeasureRun.__call__
+    monkeypatch.setattr(MeasureRun, "__call__", lambda self, task: (asked.append(self), real(self, task))[1])
+    session, controller = explorer.session, explorer.controller
+    column = session.state.columns[0]
+    first = controller.column_scene(column.id)
+    assert first.measures
+    assert first.findings is not None
+    session.set_seed(session.state.seed + 1)
+    qtbot.waitUntil(lambda: explorer.idle and controller.column_scene(column.id).result is not first.result)
+    second = controller.column_scene(column.id)
+    assert second.measures != first.measures
+    done = len(asked)
+    assert done > 0
+    for step, wanted in ((session.undo, first), (session.redo, second)):
+        step()
+        qtbot.waitUntil(lambda wanted=wanted: controller.column_scene(column.id).result is wanted.result)
+        # They come with the picture.
+        scene = controller.column_scene(column.id)
+        assert (scene.measures, scene.findings) == (wanted.measures, wanted.findings)
+        assert scene.measured_size == wanted.measured_size
+        qtbot.waitUntil(lambda: explorer.idle)
+        assert controller.column_scene(column.id).measures == wanted.measures
+    assert len(asked) == done
+
+
+def test_numbers_go_with_their_result() -> None:
+    kept, end = KeptResults(most=1), finished(0)
+    found = Measured({"d": 0.1}, (8, 8), ())
+    kept.note("a", found)
+    assert kept.measured("a") is None
+    kept.put("a", end)
+    kept.note("a", found)
+    assert kept.measured("a") is found
+    kept.put("b", finished(1))
+    assert kept.measured("a") is None

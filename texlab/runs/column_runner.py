@@ -289,6 +289,11 @@ class ColumnRunner(QObject):
 
     def _finished(self, end: Finished | Drafted) -> None:
         self._came(end)
+        if self._known(end) is not None:
+            # The same bits have the same numbers.
+            self._stop_measuring()
+            self._shared.points.note(self.scene)
+            return
         if self._exemplar is None or (self.worker.behind and not self._overdue):
             return
         result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
@@ -298,6 +303,12 @@ class ColumnRunner(QObject):
             self._measure_next()
 
     # Numbers about the picture.
+
+    def _known(self, end: Finished | Drafted) -> Measured | None:
+        """Return the numbers of a finished result that was measured before."""
+        if isinstance(end, Drafted) or end.draft:
+            return None
+        return self._shared.kept.measured(end.result.job.key)
 
     def _measure_next(self) -> None:
         self._measured, self._unmeasured = self._unmeasured, None
@@ -310,6 +321,9 @@ class ColumnRunner(QObject):
 
     def _measures_came(self, end: Measured) -> None:
         self._measured_s = time.monotonic()
+        run = self._measured
+        if run is not None and run.result is not None and not run.draft:
+            self._shared.kept.note(run.result.job.key, end)
         history = self.scene.history
         if not self.scene.draft and self.scene.result is not None:
             history = measured(history, self.scene.result.job.key, end.measures)
@@ -358,7 +372,12 @@ class ColumnRunner(QObject):
         }
         if not end.draft:
             changes |= {"frames": end.frames, "measures": {}}
-            changes["history"] = remembered(self.scene.history, past_of(end.result.job, end.picture))
+            history = remembered(self.scene.history, past_of(end.result.job, end.picture))
+            if (known := self._known(end)) is not None:
+                changes |= {"measures": known.measures, "measured_size": known.size}
+                changes |= {"findings": known.findings, "unexamined": known.unexamined}
+                history = measured(history, end.result.job.key, known.measures)
+            changes["history"] = history
         self._show(**changes)
 
     def _failed(self, sentence: str) -> None:

@@ -11,7 +11,7 @@ from texlab_core.engine.cache import array_bytes
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from texlab.runs.column_run import Finished
+    from texlab.runs.column_run import Finished, Measured
 
 MAX_BYTES = 256 * 2**20
 MOST = 64
@@ -32,6 +32,7 @@ class KeptResults:
         self._max_bytes = max_bytes
         self._most = most
         self._kept: OrderedDict[Hashable, tuple[Finished, int]] = OrderedDict()
+        self._measured: dict[Hashable, Measured] = {}
         self._lock = threading.Lock()
 
     def get(self, key: Hashable) -> Finished | None:
@@ -49,7 +50,18 @@ class KeptResults:
             self._kept[key] = end, size
             self._kept.move_to_end(key)
             while len(self._kept) > self._most or (len(self._kept) > 1 and self._sum() > self._max_bytes):
-                self._kept.popitem(last=False)
+                self._measured.pop(self._kept.popitem(last=False)[0], None)
+
+    def note(self, key: Hashable, found: Measured) -> None:
+        """Keep numbers and findings with the result of a job, as long as that is kept."""
+        with self._lock:
+            if key in self._kept:
+                self._measured[key] = found
+
+    def measured(self, key: Hashable) -> Measured | None:
+        """Return what is known of a job's result, or None when it has to be measured."""
+        with self._lock:
+            return self._measured.get(key)
 
     @property
     def nbytes(self) -> int:
@@ -64,6 +76,7 @@ class KeptResults:
         """Forget everything."""
         with self._lock:
             self._kept.clear()
+            self._measured.clear()
 
     def _sum(self) -> int:
         return sum(size for _, size in self._kept.values())
