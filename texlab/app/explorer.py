@@ -93,6 +93,7 @@ class Explorer(QObject):
         self.exchange = Exchange(window, settings, self.controller, self.opener)
         self.opener.locate_wanted = self.exchange.ask_locate
         self.desk = HelpDesk(window, self.session)
+        self.desk.read_wanted = lambda read, done: self.controller.once("palette", lambda task: read(), done)
         self.tabs = TabPictures(window, settings, self.controller)
         self.tuning = Tuning(window, self.workspace)
         window.add_below(self.tuning.bar)

@@ -26,6 +26,7 @@ from texlab.style.numbers import number
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar, pg
+from texlab.widgets.tables import add_copying, list_text
 from texlab_core.engine.late_maps import map_titles
 
 if TYPE_CHECKING:
@@ -106,6 +107,7 @@ class MapsDock(FramedDock):
         self.regions.setObjectName("maps-regions")
         self.regions.setAccessibleName("Largest regions")
         set_tip(self.regions, "The largest regions; choose one to see it alone, choose it again to see all")
+        add_copying(self.regions, lambda: list_text(self.regions))
         self.regions.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.regions.itemActivated.connect(self._choose_region)
         self.regions.itemClicked.connect(self._choose_region)

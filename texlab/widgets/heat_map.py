@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import ink_on, paint
 from texlab.widgets.own_keys import OwnKeys, is_plain
+from texlab.widgets.tables import add_copying
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,6 +50,15 @@ class HeatMap(OwnKeys, QWidget):
         self._rows: list[str] = []
         self._columns: list[str] = []
         self._selected: tuple[int, int] | None = None
+        add_copying(self, self.as_text)
+
+    def as_text(self) -> str:
+        """Return the cells with the names of rows and columns: tabs between columns, a line for each row."""
+        rows = [
+            ["", *self._columns],
+            *([name, *texts] for name, texts in zip(self._rows, self._texts, strict=False)),
+        ]
+        return "".join("\t".join(" ".join(cell.split()) for cell in row) + "\n" for row in rows)
 
     def show_cells(
         self,

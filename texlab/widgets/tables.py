@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import QAbstractItemView, QApplication, QFrame, QHeaderView, QTableWidget
+from PySide6.QtWidgets import QAbstractItemView, QApplication, QFrame, QHeaderView, QListWidget, QTableWidget
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from PySide6.QtWidgets import QWidget
 
 from texlab.widgets.own_keys import CopyKey
 
@@ -23,14 +30,27 @@ def make_quiet(table: QTableWidget) -> None:
 
 def make_copyable(table: QTableWidget) -> None:
     """Let the table be copied as text, by its context menu and, while it has the keyboard, by its key."""
-    action = QAction("Copy table as text", table)
+    add_copying(table, lambda: table_text(table))
+
+
+def add_copying(widget: QWidget, text: Callable[[], str]) -> None:
+    """Let what a widget shows be copied as text: by its context menu and, while it has the keyboard, by its key."""
+    action = QAction("Copy table as text", widget)
     action.setObjectName("copy-table")
     action.setShortcut(QKeySequence.StandardKey.Copy)
     action.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
-    action.triggered.connect(lambda: QApplication.clipboard().setText(table_text(table)))
-    table.addAction(action)
-    CopyKey(table, action)
-    table.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+    action.triggered.connect(lambda: QApplication.clipboard().setText(text()))
+    widget.addAction(action)
+    CopyKey(widget, action)
+    widget.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+
+
+def list_text(listed: QListWidget) -> str:
+    """Return the entries that are seen, a line for each; of several selected ones these alone."""
+    items = [listed.item(place) for place in range(listed.count())]
+    chosen = [item for item in items if item.isSelected()]
+    shown = chosen if len(chosen) > 1 else [item for item in items if not item.isHidden()]
+    return "".join(f"{' '.join(item.text().split())}\n" for item in shown)
 
 
 def table_text(table: QTableWidget) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QPoint, Signal
+from PySide6.QtCore import QObject, QPoint, Qt, Signal
+from PySide6.QtWidgets import QWidget
 
 from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
@@ -14,8 +15,14 @@ from texlab_core.engine.params import describe
 from texlab_core.engine.run import versions
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
     from texlab.state.session import Session
     from texlab.window.main_window import MainWindow
+    from texlab_core.documents.lessons import Lesson
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
+
+_DIRECT = Qt.FindChildOption.FindDirectChildrenOnly
 
 
 class HelpDesk(QObject):
@@ -31,6 +38,8 @@ class HelpDesk(QObject):
         self._window = window
         self._session = session
         self.help: HelpWindow | None = None
+        self.read_wanted: Callable[[Callable[[], Any], Callable[[Any], None]], None] = lambda read, done: None
+        self._palette: CommandPalette | None = None
 
     def show_help(self, page: str) -> None:
         """Open a help page."""
@@ -57,11 +66,67 @@ class HelpDesk(QObject):
     def show_palette(self) -> None:
         """Open the command palette."""
         palette = CommandPalette(self._entries(), self._window)
+        palette.destroyed.connect(self._forget_palette)
+        self._palette = palette
+        # Lessons and sweeps are files: they are read elsewhere, once.
+        self.read_wanted(self._read, self._found)
         palette.move(self._window.mapToGlobal(QPoint((self._window.width() - palette.width()) // 2, 80)))
         palette.show()
 
+    def _forget_palette(self) -> None:
+        self._palette = None
+
+    @staticmethod
+    def _read() -> tuple[Mapping[str, Lesson], Sequence[SweepRecipe]]:
+        """Return the lessons and the ready-made sweeps that come with the program."""
+        from texlab_core.lessons.shelf import bundled
+        from texlab_core.sheets.sweep_recipes import bundled_sweeps
+
+        return bundled(), tuple(bundled_sweeps())
+
+    def _found(self, found: tuple[Mapping[str, Lesson], Sequence[SweepRecipe]]) -> None:
+        if self._palette is None:
+            return
+        lessons, sweeps = found
+        self._palette.add(
+            [
+                *(
+                    Entry("lesson", each.title, name, partial(self.lesson_wanted.emit, name))
+                    for name, each in lessons.items()
+                ),
+                *(
+                    Entry("sweep", each.name.replace("-", " "), each.note, partial(self._show_sweep, each))
+                    for each in sweeps
+                ),
+            ]
+        )
+
+    def _show_sweep(self, sweep: SweepRecipe) -> None:
+        """Show a ready-made sweep in its panel, in a column of its method."""
+        columns = self._session.state.columns
+        column = next((each for each in columns if each.method == sweep.method), None)
+        if column is not None:
+            self._session.select(column.id)
+        self._window.raise_dock("sweeps")
+
+    def _settings(self) -> list[Entry]:
+        """Return the controls of the panels: each leads there."""
+        found = []
+        for name, dock in self._window.docks.items():
+            line = dock.widget().findChild(QWidget, f"{name}-controls")
+            for control in () if line is None else line.findChildren(QWidget, options=_DIRECT):
+                if control.accessibleName() and control.focusPolicy() != Qt.FocusPolicy.NoFocus:
+                    title = f"{dock.windowTitle()}: {control.accessibleName()}"
+                    run = partial(self._show_control, name, control)
+                    found.append(Entry("setting", title, control.toolTip(), run))
+        return found
+
+    def _show_control(self, name: str, control: QWidget) -> None:
+        self._window.raise_dock(name)
+        control.setFocus()
+
     def _entries(self) -> list[Entry]:
-        """Return what the palette finds: commands and panels, parameters, presets, textures."""
+        """Return what the palette finds: commands and panels, settings, parameters, presets, textures, files."""
         window, column = self._window, self._session.selected_column
         found = of_actions(window.actions_by_name.values())
         if column is not None:
@@ -71,6 +136,13 @@ class HelpDesk(QObject):
         bar = window.parameters.presets
         found += [
             Entry("preset", preset.name, preset.note, partial(bar.chosen.emit, preset)) for preset in bar.presets
+        ]
+        found += self._settings()
+        found += [
+            Entry(
+                "recent file", action.text().replace("\\", "/").rpartition("/")[2], action.text(), action.trigger
+            )
+            for action in window.recent_menu.actions()
         ]
         gallery = window.gallery
         found += [

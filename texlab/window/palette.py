@@ -1,4 +1,4 @@
-"""The palette: type a few letters, press Enter; it finds commands, panels, textures, presets and parameters."""
+"""The palette: type a few letters, press Enter; it finds whatever has a name."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class CommandPalette(QDialog):
         self._shown: list[Entry] = []
         self.field = QLineEdit()
         self.field.setObjectName("palette-field")
-        self.field.setPlaceholderText("Type a command, panel, texture, preset or parameter")
+        self.field.setPlaceholderText("Type a command, panel, setting, texture, preset, sweep, lesson or file")
         self.field.setAccessibleName("Command")
         self.list = QListWidget()
         self.list.setObjectName("palette-list")
@@ -100,6 +100,13 @@ class CommandPalette(QDialog):
         self.list.itemClicked.connect(self._run)
         self._fill("")
         self.field.setFocus()
+
+    def add(self, entries: Sequence[Entry]) -> None:
+        """Find these too, which had to be read first."""
+        self._entries = [*self._entries, *entries]
+        chosen = self.list.currentRow()
+        self._fill(self.field.text())
+        self.list.setCurrentRow(min(max(chosen, 0), self.list.count() - 1))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Move the choice with the arrow keys while typing."""

@@ -24,6 +24,7 @@ from texlab.docks.recent import Same
 from texlab.style.pictures import to_picture
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.tables import add_copying, list_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,6 +72,7 @@ class FindingsDock(FramedDock):
         self.list.setObjectName("findings-list")
         self.list.setAccessibleName("Findings")
         set_tip(self.list, "What is wrong, certain things first; choose one to see where it is")
+        add_copying(self.list, lambda: list_text(self.list))
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.list.currentRowChanged.connect(self._choose)
         self.text = Label("")
