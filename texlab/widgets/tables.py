@@ -34,7 +34,7 @@ def make_copyable(table: QTableWidget) -> None:
 
 
 def add_copying(widget: QWidget, text: Callable[[], str]) -> None:
-    """Let what a widget shows be copied as text: by its context menu and, while it has the keyboard, by its key."""
+    """Let what a widget shows be copied as text: by its context menu, and by its key while it has the keyboard."""
     action = QAction("Copy table as text", widget)
     action.setObjectName("copy-table")
     action.setShortcut(QKeySequence.StandardKey.Copy)
