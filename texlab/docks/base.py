@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QToolTip, QWidget
+from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
+from texlab.state.intentions import TakePicture, TakeStage
 from texlab.widgets.control_settings import control_settings, take_control_settings
 from texlab.widgets.own_keys import OwnKeys
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+
+    from PySide6.QtGui import QContextMenuEvent
 
     from texlab.state.scene import Scene
     from texlab.style.theme import Theme
@@ -87,6 +90,21 @@ class Dock(OwnKeys, QWidget):
 
     def set_seen(self, seen: bool) -> None:
         """Take note of whether any part of the dock can be seen; a tab behind another one cannot."""
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with what the panel shows."""
+        menu = QMenu(self)
+        menu.setObjectName("panel-menu")
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        for text, intention in (
+            ("Copy picture of this panel", TakePicture(self.name, "copy")),
+            ("Save picture of this panel ...", TakePicture(self.name, "save")),
+            ("Over the stage, or back", TakeStage(self.within or self.name)),
+        ):
+            action = menu.addAction(text)
+            action.triggered.connect(lambda _=False, intention=intention: self.intention.emit(intention))
+        menu.popup(event.globalPos())
+        event.accept()
 
     def event(self, event: QEvent) -> bool:
         """Keep the tooltip of the frame, which explains the whole dock, off the pictures and plots."""

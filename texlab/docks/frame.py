@@ -10,7 +10,6 @@ from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QMenu,
     QPushButton,
     QSizePolicy,
     QStackedLayout,
@@ -20,7 +19,7 @@ from PySide6.QtWidgets import (
 
 from texlab.docks.base import Dock
 from texlab.docks.recent import Recent, Same
-from texlab.state.intentions import ShowStage, TakePicture, TakeStage
+from texlab.state.intentions import ShowStage, TakePicture
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
@@ -30,8 +29,6 @@ from texlab.widgets.readout import Readout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-
-    from PySide6.QtGui import QContextMenuEvent
 
     from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
@@ -240,21 +237,6 @@ class FramedDock(Dock):
     def message(self) -> str | None:
         """The sentence that is shown instead of the body, or None."""
         return self._message.text() if self._stack.currentWidget() is self._message else None
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer what can be done with what the panel shows."""
-        menu = QMenu(self)
-        menu.setObjectName("panel-menu")
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        for text, intention in (
-            ("Copy picture of this panel", TakePicture(self.name, "copy")),
-            ("Save picture of this panel ...", TakePicture(self.name, "save")),
-            ("Over the stage, or back", TakeStage(self.name)),
-        ):
-            action = menu.addAction(text)
-            action.triggered.connect(lambda _=False, intention=intention: self.intention.emit(intention))
-        menu.popup(event.globalPos())
-        event.accept()
 
     # Controls.
 
