@@ -118,6 +118,22 @@ def test_the_pixel_of_a_result_with_where_it_is_from(bench: Bench) -> None:
     assert bench.window.pixel == ""
 
 
+def test_what_is_under_the_pointer_follows_the_picture(bench: Bench) -> None:
+    bench.presenter.say_column_pixel(1, 7, 9)
+    before = bench.window.pixel
+    bench.column = column_of(noise(24, 32, seed=5), method=HB.id, params=HB.params())
+    bench.presenter.show_scene(scene_of(bench.column))
+    red, green, blue = bench.column.image[7, 9]
+    assert bench.window.pixel == f"9, 7   RGB {red:.3f} {green:.3f} {blue:.3f}" != before
+    # A smaller picture has no such pixel; the exemplar is no other.
+    bench.column = column_of(noise(6, 6), method=HB.id, params=HB.params())
+    bench.presenter.show_scene(scene_of(bench.column))
+    assert bench.window.pixel == ""
+    bench.presenter.say_exemplar_pixel(19, 3)
+    bench.presenter.show_scene(scene_of(bench.column))
+    assert bench.window.pixel.startswith("exemplar 3, 19")
+
+
 def test_the_pixel_of_the_exemplar(bench: Bench) -> None:
     bench.presenter.say_exemplar_pixel(19, 3)
     red, green, blue = bench.source.pixels[19, 3]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
@@ -12,7 +13,7 @@ from texlab_core.engine.late_maps import made_map
 from texlab_core.engine.registry import methods
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from texlab.columns.overlays import Overlays
     from texlab.columns.workspace import Workspace
@@ -56,6 +57,8 @@ class Presenter(QObject):
         self._overlays = overlays
         self._hosts = hosts
         self._shown_exemplar = ""
+        # Says again what is under the pointer, which stays while pictures come and go.
+        self._say_pixel: Callable[[], None] = lambda: None
 
     def show_session(self) -> None:
         """Follow the session: values, form, presets, what is chosen."""
@@ -73,6 +76,7 @@ class Presenter(QObject):
         self._workspace.exemplar.show_source(prepared.source_picture)
         self._presets.show_exemplar(prepared.exemplar)
         self._show_choice()
+        self._say_pixel()
 
     def show_scene(self, scene: Scene) -> None:
         """Show the columns and everything about them."""
@@ -93,6 +97,7 @@ class Presenter(QObject):
         finished = scene_chosen is not None and scene_chosen.result is not None
         for name in ("export", "use"):
             self._window.actions_by_name[name].setEnabled(finished)
+        self._say_pixel()
         self.painted.emit()
 
     def show_marks(self, marks: tuple[Mark, ...]) -> None:
@@ -110,6 +115,7 @@ class Presenter(QObject):
 
     def say_exemplar_pixel(self, row: int, column: int) -> None:
         """Say what is under the pointer in the exemplar."""
+        self._say_pixel = partial(self.say_exemplar_pixel, row, column)
         prepared = self._controller.prepared
         text = ""
         if prepared is not None and row >= 0:
@@ -120,6 +126,7 @@ class Presenter(QObject):
 
     def say_column_pixel(self, column_id: int, row: int, column: int) -> None:
         """Say what is under the pointer in a column."""
+        self._say_pixel = partial(self.say_column_pixel, column_id, row, column)
         scene = self._controller.column_scene(column_id)
         text = ""
         if scene is not None and scene.image is not None and row >= 0:
