@@ -82,6 +82,7 @@ class Bench:
         pane: Any = Said()
         self.pane = pane
         self.exemplar.pane = pane
+        self.exemplar.panel = Said()
         workspace: Any = Said()
         self.workspace = workspace
         workspace.exemplar, workspace.link = self.exemplar, self.link
