@@ -175,7 +175,7 @@ def test_the_session_and_the_exemplar_have_names(bench: Bench) -> None:
     assert bench.window.title == "sand - TexLab"
     assert bench.window.actions_by_name["crop"].isChecked() is False
     assert bench.exemplar.calls["show_choice"][0] == "sand"
-    assert bench.exemplar.calls["show_choice"][1] == ["16 x 12 colour"]
+    assert bench.exemplar.calls["show_choice"][1] == ["16 x 12 colour at 6, 4 of 30 x 20"]
     assert "hide" not in bench.window.message_bar.calls
     other = Sample(image_input(noise(8, 8, 1, seed=4), "mine.png"))
     bench.session.set_sample(other)
