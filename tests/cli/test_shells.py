@@ -32,7 +32,7 @@ TYPED = [
     ("texlab methods deT", "methods de-bonet"),
     ("texlab synth gallery:structured-coffT", "synth gallery:structured-coffeebeans"),
     ("texlab batch gallT", "batch gallery:de-bonet-800"),
-    ("texlab sweep --recipe efros-leung-shT", "sweep --recipe efros-leung-shapes"),
+    ("texlab sweep --sweep efros-leung-shT", "sweep --sweep efros-leung-shapes"),
     ("texlab screenshot --theme lT", "screenshot --theme light"),
     ("texlab presets renT", "presets rename"),
     ("texlab synth my-picT", "synth my-picture.png"),
