@@ -21,7 +21,6 @@ from texlab.state import session as session_module
 from texlab.state.session import Sample, Session
 from texlab.storage.kept_exemplar import Kept, keep, load
 from texlab.storage.settings import Settings
-from texlab.widgets.plots import Plot
 from texlab.widgets.status_line import StatusLine
 from texlab.window.palette import CommandPalette
 from texlab_core.images.exemplar import as_exemplar
@@ -142,43 +141,6 @@ def test_lines_under_pictures_are_never_cut(qtbot: Any) -> None:
     )
     assert line.text().startswith("window: must be")
     assert line.text().endswith("…")
-
-
-def test_teach_enlarges_the_text_and_the_room_for_it(qtbot: Any, explorer: Explorer) -> None:
-    line = explorer.workspace.columns[ids(explorer)[0]].line
-    before = line.font().pointSizeF()
-    actions = explorer.window.actions_by_name
-    try:
-        actions["layout-teach"].trigger()
-        for widget in (line, explorer.window.toolbar.seed_box, explorer.workspace.exemplar.line):
-            assert widget.font().pointSizeF() == pytest.approx(1.35 * before)
-        qtbot.waitUntil(lambda: line.height() >= line.fontMetrics().lineSpacing(), timeout=5_000)
-    finally:
-        actions["layout-explore"].trigger()
-    assert line.font().pointSizeF() == pytest.approx(before)
-
-
-def test_teach_enlarges_the_text_in_plots_and_mosaics(qtbot: Any, explorer: Explorer) -> None:
-    window = explorer.window
-    window.docks["histograms"].raise_()
-    wait_idle(qtbot, explorer)
-    plot = window.docks["histograms"].widget().findChild(Plot)
-    (label, *_) = window.docks["pyramid"].widget().exemplar._labels
-    axis = plot.axes["bottom"]
-
-    def sizes() -> tuple[float, float]:
-        return axis.style["tickFont"].pointSizeF(), label.textItem.font().pointSizeF()
-
-    before, height = sizes(), axis.height()
-    try:
-        window.actions_by_name["layout-teach"].trigger()
-        assert sizes() == pytest.approx([1.35 * size for size in before])
-        window.docks["histograms"].raise_()
-        qtbot.waitUntil(lambda: axis.height() > height, timeout=5_000)
-    finally:
-        window.actions_by_name["layout-explore"].trigger()
-    assert sizes() == pytest.approx(before)
-    wait_idle(qtbot, explorer)
 
 
 def test_the_help_of_a_dock_does_not_cover_its_plots(qtbot: Any, explorer: Explorer) -> None:

@@ -37,6 +37,7 @@ from texlab.window.own_layouts import OwnLayouts
 from texlab.window.presenter import Presenter
 from texlab.window.stage_settings import StageSettings
 from texlab.window.tab_pictures import TabPictures
+from texlab.window.teach_mode import TeachMode
 from texlab.window.teacher import Teacher
 from texlab.window.tuning import Tuning
 from texlab_core.engine.inputs import Crop
@@ -133,6 +134,9 @@ class Explorer(QObject):
         window.add_docks(self.docks)
         self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted)
         window.actions_by_name["own-layouts"].triggered.connect(lambda _: self.own_layouts.ask())
+        self.teach_mode = TeachMode(window, self.workspace, self.session)
+        self.teacher.told.connect(self.teach_mode.notes.show_lesson)
+        self.teach_mode.notes.show_lesson(self.teacher.scene)
         self.presenter.show_theme(themes.theme)
         self._connect()
         self.thumbnails = Thumbnails(window.gallery, self)
@@ -199,6 +203,7 @@ class Explorer(QObject):
         self._closed = True
         self._memory.stop()
         self.handlers.close()
+        self.teach_mode.close()
         self.window.remember_geometry()
         # Nobody has to watch the threads come to their end.
         self.window.hide()

@@ -137,6 +137,12 @@ class ExemplarView(Cell):
         self.pane.clicked.connect(self.clicked)
         self.pane.double_clicked.connect(self.enlarged)
 
+    def set_quiet(self, quiet: bool) -> None:
+        """Leave the room above the picture to its name, or show what is turned there again."""
+        for each in (self.crop_button, self.scale_box):
+            each.setVisible(not quiet)
+        self._elide()
+
     def show_source(self, picture: Picture | None) -> None:
         """Show the scaled source."""
         if picture is not self.pane.picture:

@@ -85,6 +85,12 @@ class Foot(QWidget):
         self.row.setDirection(ways.TopToBottom if words == "beside" else ways.LeftToRight)
         self.box.setDirection(ways.LeftToRight if words == "line" else ways.TopToBottom)
         self.box.setSpacing(GAP if words == "line" else 0)
+        policy = QSizePolicy.Policy
+        for each in self.figures:
+            # What is longer than the longest figure is broken into lines there.
+            each.setWordWrap(words == "beside")
+            across = policy.Preferred if words == "beside" else policy.Fixed
+            each.setSizePolicy(across, policy.Minimum if words == "beside" else policy.Fixed)
         self.line.set_lines(self._lines)
         self._take_room()
         self._fit()

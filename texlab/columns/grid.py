@@ -47,13 +47,19 @@ class Grid(QWidget):
                 cell.setParent(self)
             cell.show()
 
-    def place(self, room: tuple[int, int]) -> None:
-        """Give every cell its place in a room of this width and height."""
+    def place(self, room: tuple[int, int], bar: int = 0) -> None:
+        """Give every cell its place in a room of this width and height.
+
+        Where the cells are higher than the room, but not wider, a bar of this width takes a part of it.
+        """
         if not self._cells:
             return
         frames = {words: reduce(Frame.joined, (cell.frame_of(words) for cell in self._cells)) for words in WORDS}
         made = arrange(len(self._cells), room, frames, self.aspect, self.rows)
+        if made.total[1] > room[1] >= 0 and made.total[0] <= room[0]:
+            made = arrange(len(self._cells), (room[0] - bar, room[1]), frames, self.aspect, self.rows)
         self.arrangement = made
+        # It is said once: bars that come and go between two sizes would never come to rest.
         self.setMinimumSize(*made.total)
         for place, cell in enumerate(self._cells):
             cell.set_words(made.words)

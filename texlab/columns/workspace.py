@@ -66,6 +66,7 @@ class Workspace(QScrollArea):
         self._order: tuple[int, ...] = ()
         self._titled: tuple[ColumnScene, ...] = ()
         self._only: tuple[int, ...] | None = None
+        self._has_exemplar = True
         self._enlarged: int | None = None
         self._extents = (1, 1), (1, 1)
         self._revealed = 0
@@ -143,10 +144,13 @@ class Workspace(QScrollArea):
         self._enlarged = None if self._enlarged == column_id else column_id
         self._show_cells()
 
-    def show_only(self, column_ids: tuple[int, ...] | None) -> None:
-        """Fold away all columns but these; None unfolds all."""
-        if column_ids != self._only:
-            self._only = column_ids
+    def show_only(self, column_ids: tuple[int, ...] | None, *, exemplar: bool = True) -> None:
+        """Fold away all columns but these, and the exemplar when it is not wanted; None unfolds all.
+
+        Something always stays in sight: the exemplar, when nothing else would.
+        """
+        if (column_ids, exemplar) != (self._only, self._has_exemplar):
+            self._only, self._has_exemplar = column_ids, exemplar
             self._enlarged = None
             self._show_cells()
 
@@ -155,7 +159,7 @@ class Workspace(QScrollArea):
         """Ids of the columns that are not folded away."""
         if self._only is None:
             return self._order
-        return tuple(each for each in self._only if each in self.columns) or self._order
+        return tuple(each for each in self._order if each in self._only)
 
     def set_rows(self, rows: Rows) -> None:
         """Arrange the pictures in one row, in two, or in as many as make them largest."""
@@ -163,7 +167,9 @@ class Workspace(QScrollArea):
         self.place()
 
     def _show_cells(self) -> None:
-        cells: list[ExemplarView | ColumnView] = [self.exemplar, *(self.columns[each] for each in self.shown_ids)]
+        cells: list[ExemplarView | ColumnView] = [self.columns[each] for each in self.shown_ids]
+        if self._has_exemplar or not cells:
+            cells.insert(0, self.exemplar)
         if self._enlarged is not None:
             cells = [self.exemplar if self._enlarged == EXEMPLAR else self.columns[self._enlarged]]
         for view in (self.exemplar, *self.columns.values()):
@@ -176,12 +182,7 @@ class Workspace(QScrollArea):
         """Give every picture the room there is."""
         self._placing.stop()
         size = self.maximumViewportSize()
-        self.grid.place((size.width(), size.height()))
-        made = self.grid.arrangement
-        if made is not None and made.total[1] > size.height() >= 0 and made.total[0] <= size.width():
-            # The bar that is then needed takes some of the width.
-            bar = self.verticalScrollBar().sizeHint().width()
-            self.grid.place((size.width() - bar, size.height()))
+        self.grid.place((size.width(), size.height()), self.verticalScrollBar().sizeHint().width())
         self.link.resized()
         self.exemplar_link.resized()
         self.arranged.emit()

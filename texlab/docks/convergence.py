@@ -15,6 +15,7 @@ from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number
+from texlab.style.text_size import grow_with_text, text_scale
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.plain import Label, MarkupLabel, escaped, set_tip
 from texlab.widgets.plots import SERIES, Plot
@@ -142,7 +143,7 @@ class ConvergenceDock(FramedDock):
         self.log = self.add_switch("log", "Log", "Logarithmic distance", lambda _: self._redraw())
         self.log.setChecked(True)
         self.iteration = QSlider(Qt.Orientation.Horizontal)
-        self.iteration.setFixedWidth(120)
+        grow_with_text(self.iteration, 120, self.iteration.setFixedWidth)
         self.iteration.setPageStep(1)
         self.iteration.valueChanged.connect(self._show_heat)
         tip = "Iteration that the heat map shows"
@@ -240,7 +241,7 @@ class ConvergenceDock(FramedDock):
 
     def _make_room(self) -> None:
         many = self.answer is not None and len(self.answer.alike) - len(self.answer.references) > 1
-        self.all.setVisible(many and (self.width() >= WIDE_ENOUGH or self._heat is None))
+        self.all.setVisible(many and (self.width() >= WIDE_ENOUGH * text_scale(self) or self._heat is None))
 
     def _redraw(self) -> None:
         answer: ConvergenceAnswer | None = self.answer

@@ -97,6 +97,8 @@ class FramedDock(Dock):
     empty: ClassVar[str] = "Nothing to show yet."
     heavy: ClassVar[bool] = False
     """Whether its answers are as large as pictures, and go when they are out of date and out of sight."""
+    folds: ClassVar[bool] = True
+    """Whether its controls can be folded away when one teaches."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -106,6 +108,11 @@ class FramedDock(Dock):
         self.controls = QWidget(self)
         self.controls.setObjectName(f"{self.name}-controls")
         self._line = FlowLayout(self.controls)
+        # Docks show and hide their controls themselves; this hides them from outside.
+        self._fold = QWidget(self)
+        folded = QVBoxLayout(self._fold)
+        folded.setContentsMargins(0, 0, 0, 0)
+        folded.addWidget(self.controls)
         self.handle = PictureHandle()
         self.handle.clicked.connect(lambda _: self.intention.emit(TakePicture(self.name, "copy")))
         self.handle.dragged.connect(lambda: self.intention.emit(TakePicture(self.name, "drag")))
@@ -142,7 +149,7 @@ class FramedDock(Dock):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addWidget(self.controls)
+        layout.addWidget(self._fold)
         layout.addWidget(pages, 1)
         self.build()
         tip = "Drag what this tab shows into a slide; a click copies it; Ctrl+Shift+S saves it"
@@ -223,6 +230,10 @@ class FramedDock(Dock):
             self._stale.adjustSize()
             self._stale.move(max(0, (self.body.width() - self._stale.width()) // 2), 4)
             self._stale.raise_()
+
+    def fold_controls(self, folded: bool) -> None:
+        """Leave the whole room to the body, or show the controls again."""
+        self._fold.setVisible(not folded)
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -30,6 +30,8 @@ from texlab.widgets.plain import Label, set_tip
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from PySide6.QtGui import QResizeEvent
+
     from texlab.state.scene import Scene
     from texlab_core.documents.lessons import Lesson, LessonStep
 
@@ -49,6 +51,7 @@ class LessonsDock(FramedDock):
     def build(self) -> None:
         """Make the list and the words."""
         self._lesson = NO_LESSON
+        self._is_folded = False
         self._shown: LessonStep | None = None
         self.jump = QComboBox()
         self.jump.setMinimumContentsLength(24)
@@ -176,6 +179,7 @@ class LessonsDock(FramedDock):
             set_tip(item, problem)
             self.list.addTopLevelItem(item)
         self.list.expandAll()
+        self._give_width()
         self._mark()
 
     def show_scene(self, scene: Scene) -> None:
@@ -192,6 +196,7 @@ class LessonsDock(FramedDock):
             for number, step in enumerate(steps, 1):
                 self.jump.addItem(f"{number}. {step.sentence}")
         self._lesson = lesson
+        self._show_list()
         if given:
             self.jump.setCurrentIndex(lesson.place)
         self._mark()
@@ -202,6 +207,32 @@ class LessonsDock(FramedDock):
         self._drawing.setVisible(lesson.step is not None and lesson.step.drawing is not None)
         self.pane.set_picture(None if drawn is None else drawn.sheet)
         self.lines.setText("" if drawn is None else "\n".join(drawn.lines))
+
+    def fold_controls(self, folded: bool) -> None:
+        """Leave the room to the step that is given, or show the list again."""
+        super().fold_controls(folded)
+        self._is_folded = folded
+        self._show_list()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the size of the text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._give_width()
+
+    def _give_width(self) -> None:
+        """Let the list show its titles whole, when that leaves half of the room to the words."""
+        bar = self.list.verticalScrollBar().sizeHint().width()
+        wanted = self.list.sizeHintForColumn(0) + bar + 2 * self.list.frameWidth()
+        self.list.setMinimumWidth(min(wanted, self.width() // 2))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Give the list its share of the room."""
+        super().resizeEvent(event)
+        self._give_width()
+
+    def _show_list(self) -> None:
+        self.list.setVisible(not (self._is_folded and self._lesson.lesson is not None))
 
     def _show_words(self, step: LessonStep | None) -> None:
         texts = ("", "", "", "") if step is None else (step.note, step.question, step.answer, step.try_this)

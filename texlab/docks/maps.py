@@ -23,6 +23,7 @@ from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.recent import Same
 from texlab.style import colouring
 from texlab.style.numbers import number
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar, pg
@@ -90,7 +91,7 @@ class MapsDock(FramedDock):
         self.opacity = QSlider(Qt.Orientation.Horizontal)
         self.opacity.setRange(0, 100)
         self.opacity.setValue(100)
-        self.opacity.setFixedWidth(110)
+        grow_with_text(self.opacity, 110, self.opacity.setFixedWidth)
         self.opacity.valueChanged.connect(self._show_overlay)
         tip = "How strongly the map covers the result: all the way left shows the result alone"
         self.add_control(self.opacity, "opacity", "Opacity of the map", tip)
@@ -136,7 +137,7 @@ class MapsDock(FramedDock):
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self.pane, 3)
         layout.addWidget(self.legend, 1)
-        self.legend.setMaximumWidth(280)
+        grow_with_text(self.legend, 280, self.legend.setMaximumWidth)
 
     def paint_theme(self, theme: Theme) -> None:
         """Give panes and bar their colours."""

@@ -34,6 +34,7 @@ class StepsDock(FramedDock):
     help = "The stages of the run, one by one: noise, iterations, levels."
     order = 30
     empty = "The stages of a run appear here."
+    folds = False
 
     def build(self) -> None:
         """Make the scrubber and the picture."""

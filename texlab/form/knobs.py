@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.form.scales import Scale, box_step, decimals
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import tip_text
 from texlab.widgets.settling import Settling
@@ -105,7 +106,7 @@ class NumberKnob(KnobWidget):
         box.setAccessibleName(field.label)
         if field.knob.unit:
             box.setSuffix(f" {field.knob.unit}")
-        box.setMinimumWidth(74)
+        grow_with_text(box, 74, box.setMinimumWidth)
         box.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         return box
 

@@ -32,6 +32,20 @@ def log_ticks(low: float, high: float, apart: float) -> list[tuple[float, str]]:
     return [(float(np.log10(value)), number(float(f"{value:.6g}"))) for value in values]
 
 
+def even_ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    """Return (value, text) of round values between two limits in steps of 1, 2 or 5: ``most`` steps or fewer."""
+    span = high - low
+    if not (math.isfinite(span) and span > 0):
+        return []
+    power = 10.0 ** math.floor(math.log10(span / most))
+    step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= span / most * (1 - 1e-9))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    decimals = max(0, -math.floor(math.log10(step) + 1e-9))
+    large = max(abs(low), abs(high)) >= 1e5 or decimals > 4
+    values = [k * step for k in range(first, last + 1)]
+    return [(value, f"{value:.3g}" if large else f"{value + 0.0:.{decimals}f}") for value in values]
+
+
 def number(value: float) -> str:
     """Return a number with four digits that matter (whole numbers with all), for tables and read-outs."""
     value = value + 0.0  # no minus before zero
@@ -58,6 +72,13 @@ def remaining(seconds: float) -> str:
     if seconds < 99.5:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.1f} min" if seconds < 10 * 60 else f"{seconds / 60:.0f} min"
+
+
+def clock_text(seconds: int) -> str:
+    """Return a time as a clock shows it: 5:09, 1:05:09."""
+    minutes, rest = divmod(seconds, 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
 def parse_number(text: str) -> float | None:

@@ -154,16 +154,19 @@ def palette(theme: Theme) -> QPalette:
 
 def stylesheet(theme: Theme, points: float) -> str:
     """Return the few rules that a palette cannot say; titles of docks do not follow the font of the program."""
+    # Qt paints the titles of docks small when their font is that of the application.
     return f"""
     QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border}; padding: 4px; }}
     QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 4px 6px; }}
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
     QMainWindow > QTabBar::tab {{ padding: 4px 8px; border: none; border-top: 2px solid transparent; }}
-    QMainWindow > QTabBar::tab:!selected {{ color: {theme.muted}; }}
-    QMainWindow > QTabBar::tab:selected {{ background: {theme.base}; border-top-color: {theme.accent}; }}
-    QMainWindow > QTabBar::tab:hover {{ color: {theme.text}; }}
-    QDockWidget {{ font-size: {points:.0f}pt; }}
+    QTabBar#lab-experiments::tab {{ border: none; border-top: 2px solid transparent; }}
+    QTabBar#lab-experiments::tab {{ padding: 2px {max(3.0, 0.35 * points):.0f}px; }}
+    QTabBar::tab:!selected {{ color: {theme.muted}; }}
+    QTabBar::tab:selected {{ background: {theme.base}; border-top-color: {theme.accent}; }}
+    QTabBar::tab:hover {{ color: {theme.text}; }}
+    QDockWidget {{ font-size: {points + 0.5:.1f}pt; }}
     QDockWidget::title {{ padding: 4px 8px; background: {theme.window}; }}
     QFrame#column {{ border: 2px solid {theme.border}; border-radius: 5px; background: {theme.base}; }}
     QFrame#column[failed="true"] {{ border-color: {theme.error}; }}

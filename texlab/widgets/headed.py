@@ -11,8 +11,9 @@ if TYPE_CHECKING:
 
 
 def headed(title: Label, view: QWidget) -> QWidget:
-    """Put a heading over a view; the heading takes no width of its own."""
-    title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+    """Put a heading over a view; it takes no width of its own, and more lines where it is wider than the view."""
+    title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
+    title.setWordWrap(True)
     part = QWidget()
     column = QVBoxLayout(part)
     column.setContentsMargins(0, 0, 0, 0)

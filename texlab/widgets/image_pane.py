@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 NOTE_MARGIN = 8
 SMALLEST_MARK = 5.0
+# Lines of marks are made for text of this size.
+USUAL_POINTS = 12.0
 MARK_COLOURS = {"candidate": "#ffd54a", "window": "#4ac8ff", "chosen": "#ff4fa3"}
 
 
@@ -36,6 +38,7 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
         super().__init__()
         self._lines: dict[str, list[QRectF]] = {}
         self._bounds = QRectF()
+        self.thickness = 1.0
         self.setZValue(20)
 
     def show_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float]) -> None:
@@ -62,7 +65,7 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
             places = [_enlarged(place, least) for place in self._lines.get(role, [])]
             if places:
                 for pen_colour, width in (("#000000", 3), (colour, 2 if role == "chosen" else 1)):
-                    painter.setPen(pg.mkPen(pen_colour, width=width))
+                    painter.setPen(pg.mkPen(pen_colour, width=width * self.thickness))
                     painter.drawRects(places)
 
 
@@ -199,6 +202,8 @@ class ImagePane(Pane):
         if self._marks is None:
             self._marks = MarksItem()
             self.view.addItem(self._marks, ignoreBounds=True)
+        # Lines are as thick as the strokes of the letters around them.
+        self._marks.thickness = max(1.0, self.font().pointSizeF() / USUAL_POINTS)
         self._marks.show_marks(marks, offset)
 
     def show_rect(self, rectangle: QRectF) -> None:

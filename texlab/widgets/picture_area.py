@@ -8,6 +8,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from texlab.style.text_size import whole_words
 from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     from texlab.style.theme import Theme
 
 SMALLEST = 72
-# Height of the caption.
-CAPTION = 16
 
 
 class PictureArea(QWidget):
@@ -49,9 +48,14 @@ class PictureArea(QWidget):
         self.picture = picture
         self.update()
 
+    @property
+    def caption_height(self) -> int:
+        """Pixels of the line below the picture."""
+        return self.fontMetrics().height() + 1
+
     def area(self) -> QRectF:
         """Return where the picture is painted."""
-        room = QRectF(self.rect()).adjusted(2, 2, -2, -2 - CAPTION)
+        room = QRectF(self.rect()).adjusted(2, 2, -2, -2 - self.caption_height)
         if self.picture is None or room.isEmpty():
             return room
         height, width = self.picture.shape[:2]
@@ -73,8 +77,8 @@ class PictureArea(QWidget):
             painter.drawImage(area, image)
             self.paint_marks(painter, area)
         painter.setPen(self._ink)
-        below = self.rect().adjusted(4, self.height() - CAPTION, -4, 0)
-        shown = painter.fontMetrics().elidedText(self.caption, Qt.TextElideMode.ElideRight, below.width())
+        below = self.rect().adjusted(4, self.height() - self.caption_height, -4, 0)
+        shown = whole_words(self.caption, painter.fontMetrics(), below.width())
         painter.drawText(below, Qt.AlignmentFlag.AlignCenter, shown)
         if self.hasFocus():
             painter.setPen(QPen(self.focus_colour, 2))

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from texlab.style.numbers import log_ticks
+from texlab.style.numbers import even_ticks, log_ticks
+from texlab.style.text_size import text_scale
 from texlab.style.theme import configure_pyqtgraph
 from texlab.widgets.plain import escaped, set_tip
 
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-    from PySide6.QtCore import QObject
-    from PySide6.QtGui import QPaintEvent, QResizeEvent
+    from PySide6.QtCore import QObject, QSizeF
+    from PySide6.QtGui import QFontMetrics, QPaintEvent, QResizeEvent
 
     from texlab.style.theme import Theme
 
@@ -68,7 +69,7 @@ class Plot(QWidget):
         self.setAccessibleName(label)
         self._theme: Theme | None = None
         self._series: list[_Series] = []
-        self._texts: list[tuple[Any, Role]] = []
+        self._texts: list[tuple[Any, Role, tuple[float, float]]] = []
         self._labels = ("", "")
         self._log = False
         self.graph: Any = pg.GraphicsView(self, background=None)
@@ -89,8 +90,10 @@ class Plot(QWidget):
             axis.enableAutoSIPrefix(False)
             axis.linkToView(self.view)
             grid.addItem(axis, row, column)
-        self.view.sigYRangeChanged.connect(self._place_ticks)
-        self.view.sigResized.connect(self._place_ticks)
+        self._grid = grid
+        for moved in (self.view.sigRangeChanged, self.view.sigResized):
+            moved.connect(self._place_ticks)
+            moved.connect(self._keep_texts_inside)
         self.graph.setMouseTracking(True)
         # The scene drops moves that follow each other quickly, even the last one; the viewport drops none.
         self.graph.viewport().installEventFilter(self)
@@ -105,17 +108,23 @@ class Plot(QWidget):
         return QSize(200, 120)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Leave the names of the axes out where the plot is low."""
+        """Leave the names of the axes out where there is no room for them."""
         super().resizeEvent(event)
-        if (event.oldSize().height() < ROOM_FOR_LABELS) != (event.size().height() < ROOM_FOR_LABELS):
-            for side, words in zip(("bottom", "left"), self._labels, strict=True):
-                self.axes[side].showLabel(bool(words) and event.size().height() >= ROOM_FOR_LABELS)
+        self._show_labels()
+
+    def _show_labels(self) -> None:
+        metrics = self.fontMetrics()
+        is_low = self.height() < ROOM_FOR_LABELS * text_scale(self)
+        # An axis is as long as the plot without the numbers of the other one.
+        rooms = self.width() - 5 * metrics.averageCharWidth(), self.height() - 2 * metrics.height()
+        for side, words, room in zip(("bottom", "left"), self._labels, rooms, strict=True):
+            self.axes[side].showLabel(bool(words) and not is_low and metrics.horizontalAdvance(words) <= room)
 
     def clear(self) -> None:
         """Take all curves and texts away."""
         for series in self._series:
             self.view.removeItem(series.item)
-        for item, _ in self._texts:
+        for item, *_ in self._texts:
             self.view.removeItem(item)
         self._series.clear()
         self._texts.clear()
@@ -172,10 +181,11 @@ class Plot(QWidget):
         """Write words at a place of the axes; they do not change the range."""
         item = pg.TextItem(words, anchor=anchor)
         item.setPos(x, y)
-        self._texts.append((item, role))
+        self._texts.append((item, role, anchor))
         self.view.addItem(item, ignoreBounds=True)
         if self._theme is not None:
             self._paint_text(item, role, self._theme)
+        self._keep_texts_inside()
         return item
 
     def set_labels(self, x: str, y: str) -> None:
@@ -191,16 +201,33 @@ class Plot(QWidget):
 
     def _place_ticks(self, *_: object) -> None:
         """Choose the numbers at the axes for the room that there is."""
-        self.axes["bottom"].setTickDensity(float(np.clip(self.width() / 500, 0.2, 1.0)))
-        axis = self.axes["left"]
-        if not self._log:
-            axis.setTicks(None)
-            axis.setTickDensity(0.6 if self.height() < ROOM_FOR_LABELS else 1.0)
-            return
-        low, high = self.view.viewRange()[1]
+        metrics = self.fontMetrics()
+        across, up = self.view.viewRange()
+        self.axes["bottom"].setTicks([_ticks_apart(across, self.view.width(), metrics)])
+        low, high = up
         height = max(self.view.height(), 1.0)
-        room = 1.25 * self.fontMetrics().height()
-        axis.setTicks([log_ticks(low, high, room * (high - low) / height)])
+        room = 1.25 * metrics.height()
+        if self._log:
+            ticks = log_ticks(low, high, room * (high - low) / height)
+        else:
+            ticks = even_ticks(low, high, max(1, int(height / (1.6 * room))))
+        self.axes["left"].setTicks([ticks])
+
+    def _keep_texts_inside(self, *_: object) -> None:
+        """Write words beside their places: inside of the axes, and not over other words where that can be."""
+        (left, right), (low, high) = self.view.viewRange()
+        room = QRectF(0, 0, max(self.view.width(), 1.0), max(self.view.height(), 1.0))
+        taken: list[QRectF] = []
+        for item, _role, wanted in self._texts:
+            size = item.textItem.boundingRect().size()
+            x = (item.pos().x() - left) / max(right - left, 1e-300) * room.width()
+            y = (high - item.pos().y()) / max(high - low, 1e-300) * room.height()
+            places = [_beside(QPointF(x, y), size, anchor, room) for anchor in _anchors(wanted)]
+            free = (each for each in places if not any(each.intersects(other) for other in taken))
+            place = next(free, places[0])
+            taken.append(place)
+            inside = QPointF(x, y) - place.topLeft()
+            item.setAnchor((inside.x() / max(size.width(), 1.0), inside.y() / max(size.height(), 1.0)))
 
     def fit(self, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
         """Show a range, or everything where it is left out."""
@@ -218,8 +245,9 @@ class Plot(QWidget):
         self._paint_axes(theme)
         for series in self._series:
             self._paint(series, theme)
-        for item, role in self._texts:
+        for item, role, _ in self._texts:
             self._paint_text(item, role, theme)
+        self._keep_texts_inside()
 
     def changeEvent(self, event: QEvent) -> None:
         """Let axes and texts follow the size of the program's text."""
@@ -238,7 +266,10 @@ class Plot(QWidget):
             axis.setTickFont(self.font())
             # pyqtgraph writes labels as markup.
             axis.setLabel(escaped(words) or None, **{"color": theme.muted, "font-size": size})
-            axis.showLabel(bool(words) and self.height() >= ROOM_FOR_LABELS)
+        self._show_labels()
+        # The first and the last number stand half beyond their axis.
+        metrics = self.fontMetrics()
+        self._grid.setContentsMargins(0, metrics.height() // 2 + 1, metrics.horizontalAdvance("0.0"), 0)
 
     def _paint(self, series: _Series, theme: Theme) -> None:
         colour = QColor(getattr(theme, series.role))
@@ -270,6 +301,29 @@ class Plot(QWidget):
             self.fit()
         else:
             self.clicked.emit()
+
+
+def _anchors(wanted: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return where in a text its place may be, the wanted one first, then what is next to it."""
+    across = (wanted[0], 1 - wanted[0])
+    return [wanted, *((x, y) for y in (wanted[1], 1 - wanted[1], -1.0, 2.0, -2.0, 3.0) for x in across)]
+
+
+def _beside(at: QPointF, size: QSizeF, anchor: tuple[float, float], room: QRectF) -> QRectF:
+    """Return the place of a text at a point, moved into the room as far as that is large enough."""
+    left = min(max(at.x() - anchor[0] * size.width(), 0.0), max(room.width() - size.width(), 0.0))
+    top = min(max(at.y() - anchor[1] * size.height(), 0.0), max(room.height() - size.height(), 0.0))
+    return QRectF(QPointF(left, top), size)
+
+
+def _ticks_apart(limits: list[float], room: float, metrics: QFontMetrics) -> list[tuple[float, str]]:
+    """Return as many ticks of an axis across as can stand side by side."""
+    for count in range(8, 1, -1):
+        ticks = even_ticks(limits[0], limits[1], count)
+        widest = max((metrics.horizontalAdvance(words) for _, words in ticks), default=0)
+        if len(ticks) < 2 or (widest + metrics.averageCharWidth()) * len(ticks) <= room:
+            return ticks
+    return even_ticks(limits[0], limits[1], 1)
 
 
 class ColourBar(QWidget):

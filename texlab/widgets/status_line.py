@@ -115,4 +115,6 @@ class StatusLine(Label):
     def _fits(self, text: str) -> bool:
         room = QRect(0, 0, max(self.width(), 1), _TALL)
         flags = int(Qt.TextFlag.TextWordWrap.value)
-        return self.fontMetrics().boundingRect(room, flags, text).height() <= self.sizeHint().height()
+        # Beside a low picture there may be less room than for all lines.
+        high = min(self.sizeHint().height(), max(self.height(), self.fontMetrics().lineSpacing()))
+        return self.fontMetrics().boundingRect(room, flags, text).height() <= high

@@ -8,12 +8,15 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFrame, QHeaderView, QListWidget, QTableWidget
 
+from texlab.widgets.own_keys import CopyKey
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from PySide6.QtWidgets import QWidget
 
-from texlab.widgets.own_keys import CopyKey
+ROW_MARGIN = 2
+
 
 
 def make_quiet(table: QTableWidget) -> None:
@@ -51,6 +54,14 @@ def list_text(listed: QListWidget) -> str:
     chosen = [item for item in items if item.isSelected()]
     shown = chosen if len(chosen) > 1 else [item for item in items if not item.isHidden()]
     return "".join(f"{' '.join(item.text().split())}\n" for item in shown)
+
+
+def fit_rows(root: QWidget) -> None:
+    """Give the rows of all tables the height of their text: they keep the one that they were made with."""
+    for table in root.findChildren(QTableWidget):
+        head = table.verticalHeader()
+        head.setMinimumSectionSize(0)
+        head.setDefaultSectionSize(table.fontMetrics().lineSpacing() + ROW_MARGIN)
 
 
 def table_text(table: QTableWidget) -> str:

@@ -115,6 +115,35 @@ COMMANDS = (
     Command("&View", "layout-teach", "Layout Teac&h", "Ctrl+2", "Large: the images and one dock, for a projector"),
     Command("&View", "layout-tune", "Layout T&une", "Ctrl+3", "Wide parameters, no gallery"),
     Command("&View", "own-layouts", "O&wn layouts ...", "", "Keep how panels and tabs are, or go back to that"),
+    Command("&Teach", "full-screen", "&Full screen", "F11", "The whole screen, without menus", True),
+    Command("&Teach", "notes", "&Presenter's window", "F12", "Notes, next step, controls and clock", True),
+    Command("&Teach", "text-larger", "&Larger text", "Ctrl++", "Larger text everywhere"),
+    Command("&Teach", "text-smaller", "&Smaller text", "Ctrl+-", "Smaller text everywhere"),
+    Command("&Teach", "text-usual", "&Usual text", "Ctrl+0", "Text of the usual size"),
+    Command("&Teach", "next-tab", "&Next tab", "F8", "Go to the next tab", separator=True),
+    Command("&Teach", "previous-tab", "Pre&vious tab", "Shift+F8", "Go to the tab before"),
+    Command("&Teach", "tab-alone", "Tab &alone", "F3", "The open tab without the pictures, or with them", True),
+    Command("&Teach", "tab-controls", "&Controls of the tab", "F7", "In Teach: with its controls, or without"),
+    Command("&Teach", "overlay-gallery", "&Gallery", "F9", "The gallery; in Teach, over the pictures"),
+    Command("&Teach", "overlay-parameters", "Pa&rameters", "F10", "The parameters; in Teach, over the pictures"),
+    Command(
+        "&Teach", "beside", "&Keep column in sight", "K", "In Teach: others come beside it", True, separator=True
+    ),
+    *(
+        Command(
+            "&Teach",
+            f"sight-{place}",
+            f"Column &{place}: show or hide" if place else "Exemplar: show or hide",
+            f"Alt+{place}",
+            f"In Teach: show or hide {f'column {place}' if place else 'the exemplar'}",
+        )
+        for place in range(10)
+    ),
+    Command("&Teach", "halo", "&Halo", "O", "A ring around the pointer", True, True),
+    Command("&Teach", "spotlight", "Sp&otlight", "S", "Darken all but what is around the pointer", True),
+    Command("&Teach", "ink", "&Draw", "I", "Draw on the window with the mouse", True),
+    Command("&Teach", "ink-undo", "Take the last line &back", "Backspace", "Take the last drawn line back"),
+    Command("&Teach", "ink-clear", "&Wipe", "Shift+Backspace", "Wipe all drawn lines away"),
     Command("&Help", "help", "&Help", "F1", "Explain the chosen method"),
     Command("&Help", "help-window", "The &window", "", "Explain the window"),
     Command("&Help", "shortcuts", "&Keyboard", "", "List the keys"),

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
+from texlab.style.text_size import is_teaching
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from texlab.state.lesson_scene import LessonScene
 
 SENTENCE_FACTOR = 1.6
+# All text is large then.
+TEACH_FACTOR = 1.2
 
 
 class LessonBar(QWidget):
@@ -46,7 +49,19 @@ class LessonBar(QWidget):
         line.addWidget(self.sentence, 1)
         line.addWidget(self.readiness)
         line.addWidget(_button(actions["lesson-leave"]))
+        self._size_sentence()
         self.hide()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Let the sentence follow the size of the text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._size_sentence()
+
+    def _size_sentence(self) -> None:
+        font = self.font()
+        font.setPointSizeF(font.pointSizeF() * (TEACH_FACTOR if is_teaching() else SENTENCE_FACTOR))
+        self.sentence.setFont(font)
 
     def show_lesson(self, lesson: LessonScene) -> None:
         """Show a step, or nothing when no lesson is given."""
@@ -56,9 +71,6 @@ class LessonBar(QWidget):
             return
         count = len(lesson.lesson.steps)
         self.count.setText(f"{lesson.place + 1} of {count}")
-        font = self.font()
-        font.setPointSizeF(font.pointSizeF() * SENTENCE_FACTOR)
-        self.sentence.setFont(font)
         self.sentence.setText(step.sentence)
         ready = sum(lesson.ready)
         self.readiness.setText("ready" if ready == count else f"{ready} of {count} ready")

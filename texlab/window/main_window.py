@@ -37,7 +37,7 @@ from texlab.window.toolbar import ToolBar
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent
+    from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
 
     from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
@@ -79,6 +79,11 @@ class MainWindow(QMainWindow):
         self.setWindowIcon(application_icon())
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
+        # While an edge is dragged, text waits.
+        self._text = QTimer(self)
+        self._text.setSingleShot(True)
+        self._text.setInterval(100)
+        self._text.timeout.connect(self._follow_height)
         self.setGeometry(*first_window(self._available()))
         self.settings = settings
         self.themes = themes
@@ -117,8 +122,7 @@ class MainWindow(QMainWindow):
         self._make_status()
         self._restore_geometry()
         self.show_theme(themes.theme)
-        if settings.text("layout") == "teach":
-            self.layouts.set_text_size("teach")
+        self.layouts.set_text_size()
         themes.changed.connect(self.show_theme)
         self._ring = FocusRing(self)
 
@@ -151,6 +155,7 @@ class MainWindow(QMainWindow):
             dock.setWidget(each)
             set_tip(dock, each.help)
             set_tip(dock.toggleViewAction(), each.help)
+            dock.toggleViewAction().triggered.connect(partial(self._shown_by_menu, each.name))
             self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
             if first is None:
                 first = dock
@@ -287,6 +292,7 @@ class MainWindow(QMainWindow):
         """Bring a dock to the front and leave the keyboard where it is; return whether there is such a dock."""
         dock = self.docks.get(name)
         if dock is not None:
+            self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
         return dock is not None
@@ -305,12 +311,19 @@ class MainWindow(QMainWindow):
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""
         dock = self.docks.get(name)
-        if dock is not None:
+        if name in SIDES and self.layouts.current == "teach":
+            self.actions_by_name[f"overlay-{name}"].trigger()
+        elif dock is not None:
             if name not in SIDES:
                 self.strip.set_open(True)
+                self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
             dock.widget().setFocus()
+
+    def _shown_by_menu(self, name: str, shown: bool) -> None:
+        if shown:
+            self.layouts.show_alone(name)
 
     def _go_to_panel(self, name: str, _: bool = False) -> None:
         self.raise_dock(name)
@@ -338,6 +351,15 @@ class MainWindow(QMainWindow):
         self.settings.values["state"] = _base64(self.saveState())
 
     # Events.
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Let text follow the height, when teaching."""
+        super().resizeEvent(event)
+        if self.layouts.current == "teach":
+            self._text.start()
+
+    def _follow_height(self) -> None:
+        self.layouts.follow_size()
 
     def event(self, event: QEvent) -> bool:
         """Let the tabs of the docks keep their names whole when they come."""

@@ -6,7 +6,7 @@ import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any, assert_never
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.lesson_runner import LessonRunner
 from texlab.state.intentions import ChangeSteps, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
@@ -39,7 +39,11 @@ class Teacher(QObject):
     ----------
     folder
         Where the user's own lessons are; made when the first is written.
+
+    ``told(lesson)`` with a :class:`LessonScene`, whenever there is something new about the lesson.
     """
+
+    told = Signal(object)
 
     def __init__(
         self,
@@ -189,6 +193,7 @@ class Teacher(QObject):
         actions["lesson-leave"].setEnabled(count > 0)
         self._window.lesson_bar.show_lesson(self._scene)
         self._controller.show_lesson(self._scene)
+        self.told.emit(self._scene)
 
     def _leave(self) -> None:
         """Bring the user's own session back, with everything that undo and redo know."""

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from texlab.columns.comparison import GAINS, Comparison, Mode, other_of
 from texlab.columns.magnifier import Magnifier
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 
@@ -34,7 +35,7 @@ class CompareBar(QWidget):
         self.gain = ShortBox()
         self.gain.setObjectName("compare-gain")
         self.gain.setAccessibleName("Gain of the difference")
-        self.gain.setFixedWidth(70)
+        grow_with_text(self.gain, 70, self.gain.setFixedWidth)
         # A layout gives no room of their own to boxes that may shrink to nothing.
         self.gain.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         set_tip(self.gain, "The difference is multiplied by this before it is shown")
@@ -90,6 +91,8 @@ class Tuning(QObject):
 
     def set_active(self, active: bool) -> None:
         """Show A and B alone, or all columns."""
+        if self._active and not active:
+            self._workspace.show_only(None)
         self._active = active
         self.bar.setVisible(active)
         self._fold()
@@ -118,8 +121,9 @@ class Tuning(QObject):
         self.comparison.close()
 
     def _fold(self) -> None:
-        pair = tuple(each for each in self._order if each in (self.a, self.b))
-        self._workspace.show_only(pair if self._active and pair else None)
+        if self._active:
+            pair = tuple(each for each in self._order if each in (self.a, self.b))
+            self._workspace.show_only(pair or None)
 
     def _compare(self, mode: Mode, _: bool = False) -> None:
         self.comparison.set_mode(mode)

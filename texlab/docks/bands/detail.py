@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.pictures import BandLarge, band_table
 from texlab.style.numbers import number
+from texlab.style.text_size import text_scale
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar
@@ -113,8 +114,8 @@ class BandDetail(QWidget):
         self._make_room()
 
     def _make_room(self) -> None:
-        self.table.setVisible(self.width() >= ROOM_FOR_TABLE)
-        self.plot.setVisible(self.width() >= ROOM_FOR_PLOT)
+        self.table.setVisible(self.width() >= ROOM_FOR_TABLE * text_scale(self))
+        self.plot.setVisible(self.width() >= ROOM_FOR_PLOT * text_scale(self))
 
     def _hover(self, index: int, row: int, column: int) -> None:
         shown = self._shown

@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QGraphicsRectItem, QSizePolicy, QVBoxLayout, QWidget
 
+from texlab.style.text_size import smaller
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
@@ -183,7 +184,7 @@ class MosaicView(OwnKeys, QWidget):
 
     def _label_font(self) -> QFont:
         font = QFont(self.font())
-        font.setPointSizeF(max(6.5, self.font().pointSizeF() * 0.8))
+        font.setPointSizeF(smaller(self.font().pointSizeF(), 0.8))
         return font
 
     def _paint_label(self, label: Any) -> None:

@@ -18,6 +18,7 @@ from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, LookedAt, replace_items
 from texlab.docks.recent import Recent, Same
 from texlab.style.numbers import number
+from texlab.style.text_size import grow_with_text, text_scale
 from texlab.widgets.own_keys import is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
@@ -109,7 +110,7 @@ class PyramidDock(FramedDock):
             words = "Leave out the chosen band" if gain == 0 else f"Multiply the chosen band by {gain:g}"
             button = self.add_button(f"gain-{key}", label, f"{words} ({key})", partial(self._set_gain, gain))
             button.setCheckable(True)
-            button.setMaximumWidth(56)
+            grow_with_text(button, 56, button.setMaximumWidth)
             self._gain_group.addButton(button, int(gain))
         self.reset = self.add_button("reset", "Reset", "All bands as they are", self._reset)
         self.readout = self.add_readout()
@@ -254,7 +255,7 @@ class PyramidDock(FramedDock):
 
     def _make_room(self) -> None:
         """Where the dock is narrow, the large band takes the place of the mosaics and the exemplar steps back."""
-        narrow = self.width() < NARROW
+        narrow = self.width() < NARROW * text_scale(self)
         self._mosaics.setVisible(not (narrow and self.detail.isVisibleTo(self)))
         self._original_part.setVisible(not narrow)
 

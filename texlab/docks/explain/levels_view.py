@@ -10,6 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from texlab.style.text_size import whole_words
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.image_pane import MARK_COLOURS
 from texlab.widgets.own_keys import OwnKeys, is_plain
@@ -225,8 +226,7 @@ class LevelsView(OwnKeys, QWidget):
         head = QRectF(area.center().x() - pitch / 2, 0, pitch, metrics.height())
         for words, colour in ((each.title, self._theme.text), (each.note, self._theme.muted)):
             painter.setPen(QColor(colour))
-            fitted = metrics.elidedText(words, Qt.TextElideMode.ElideRight, int(pitch))
-            painter.drawText(head, Qt.AlignmentFlag.AlignCenter, fitted)
+            painter.drawText(head, Qt.AlignmentFlag.AlignCenter, whole_words(words, metrics, pitch))
             head.translate(0, metrics.height())
         painter.setBrush(Qt.BrushStyle.NoBrush)
         if tile == self._tile:

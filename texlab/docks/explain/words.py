@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QPointF, QSize
 from PySide6.QtGui import QColor, QPainter
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from texlab.style.text_size import is_teaching
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.plain import set_tip
 
@@ -36,7 +38,7 @@ class Words(QWidget):
         return "".join(words for words, _ in self._parts)
 
     def show_parts(self, *parts: Part) -> None:
-        """Write (text, role) parts; only a single part is broken into lines."""
+        """Write (text, role) parts, broken into lines where the width ends."""
         if parts != self._parts:
             self._parts = parts
             self.setAccessibleDescription(self.text())
@@ -49,21 +51,26 @@ class Words(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        """Ask for the lines."""
-        return QSize(100, self._lines * self.fontMetrics().lineSpacing() + 2)
+        """Ask for the lines; large text is broken into twice as many."""
+        lines = self._lines * (2 if is_teaching() else 1)
+        return QSize(100, lines * self.fontMetrics().lineSpacing() + 2)
 
     def minimumSizeHint(self) -> QSize:
         """Return the height of the hint."""
         return QSize(40, self.sizeHint().height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Paint the parts one after the other."""
+        """Paint the parts one after the other, word by word."""
         painter = QPainter(self)
-        area = QRectF(self.rect())
-        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop
-        wrap = int(flags) | int(Qt.TextFlag.TextWordWrap) if len(self._parts) == 1 else int(flags)
+        metrics = self.fontMetrics()
+        left, base = 0.0, float(metrics.ascent())
         for words, role in self._parts:
             painter.setPen(QColor(getattr(self._theme, role)))
-            painter.drawText(area, wrap, words)
-            area.setLeft(area.left() + self.fontMetrics().horizontalAdvance(words))
+            for piece in re.findall(r"\s*\S+|\s+", words):
+                width = metrics.horizontalAdvance(piece)
+                if left and left + width > self.width():
+                    left, base = 0.0, base + metrics.lineSpacing()
+                    piece = piece.lstrip()
+                painter.drawText(QPointF(left, base), piece)
+                left += metrics.horizontalAdvance(piece)
         painter.end()

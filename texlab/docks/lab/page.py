@@ -158,6 +158,10 @@ class Told:
     words: str
 
 
+# Ten of them stand side by side, also in a small window.
+SMALLEST = 24, 40
+
+
 class Pictures(QWidget):
     """Pictures with headings, side by side; ``hovered(index, row, column)``, -1 beside any."""
 
@@ -178,6 +182,7 @@ class Pictures(QWidget):
         columns = columns or count
         for index in range(count):
             pane = PicturePane(f"{name}-{index}", f"Picture {index + 1}", link)
+            pane.setMinimumSize(*SMALLEST)
             pane.hovered.connect(lambda row, column, index=index: self.hovered.emit(index, row, column))
             pane.clicked.connect(lambda row, column, index=index: self.clicked.emit(index, row, column))
             title = Label("")

@@ -16,7 +16,7 @@ from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.docks.solids.panes import ObjectPane, SlicePane
 from texlab.state.intentions import AskOnce, EditSize, Tell
-from texlab.widgets.picture_area import CAPTION, PictureArea
+from texlab.widgets.picture_area import PictureArea
 from texlab.widgets.plain import Label
 from texlab_core.engine.estimate import check_memory, estimate_of, in_words
 from texlab_core.engine.registry import find_method
@@ -145,10 +145,11 @@ class SolidsDock(FramedDock):
     def _arrange(self) -> None:
         shown = [area for area in self.areas if area is not self.wrapped or self.beside.isChecked()]
         width, height = max(self.body.width(), 1), max(self.body.height(), 1)
+        caption = shown[0].caption_height
 
         def side(columns: int) -> float:
             rows = -(-len(shown) // columns)
-            return min(width / columns, height / rows - CAPTION)
+            return min(width / columns, height / rows - caption)
 
         columns = max((len(shown), -(-len(shown) // 2)), key=side)
         self.wrapped.setVisible(self.beside.isChecked())

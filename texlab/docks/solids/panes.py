@@ -8,7 +8,7 @@ from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 
 from texlab.widgets.own_keys import OwnKeys, is_plain
-from texlab.widgets.picture_area import CAPTION, PictureArea
+from texlab.widgets.picture_area import PictureArea
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QWheelEvent
@@ -156,7 +156,7 @@ class ObjectPane(OwnKeys, PictureArea):
 
     def side(self, most: int) -> int:
         """Return the side of the square that is drawn, in pixels of the screen."""
-        room = min(self.width() - 4, self.height() - 4 - CAPTION)
+        room = min(self.width() - 4, self.height() - 4 - self.caption_height)
         return min(max(round(room * self.devicePixelRatioF()), 32), most)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

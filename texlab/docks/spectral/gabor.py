@@ -223,8 +223,10 @@ class GaborDock(FramedDock):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Give the frequency plane, which is square, its width."""
         if watched is self.body and event.type() == QEvent.Type.Resize:
-            room = self.body.height() - self.titles[0].sizeHint().height() - 8
-            self._plane_part.setFixedWidth(min(max(room, 90), max(self.body.width() // 3, 90)))
+            room = self.body.height() - self.titles[0].fontMetrics().lineSpacing() - 8
+            title = self.titles[0]
+            least = max(90, title.fontMetrics().horizontalAdvance(title.text()) + 4)
+            self._plane_part.setFixedWidth(max(least, min(room, self.body.width() // 3)))
         return super().eventFilter(watched, event)
 
     # The value under the cursor.

@@ -15,6 +15,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.docks.spectral.peaks_table import PeaksTable, peak_rows
 from texlab.docks.spectral.spectra import Analysed, SpectraAnswer, spectra, table_of
 from texlab.style.numbers import number
+from texlab.style.text_size import text_scale
 from texlab.widgets.headed import headed
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import Arrow, Drawn, PlaneLink, PlanePane, Ring, Spot, Tint
@@ -89,6 +90,8 @@ class SpectrumDock(FramedDock):
         layout = QHBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
         layout.addWidget(self._make_pictures(), 3)
+        for title in self.titles:
+            title.installEventFilter(self)
         layout.addWidget(self._make_plots(), 2)
         layout.addWidget(self.table)
         self._make_room()
@@ -100,6 +103,7 @@ class SpectrumDock(FramedDock):
         row.setSpacing(4)
         self.panes: list[PlanePane] = []
         self.titles: list[Label] = []
+        self._side = 90
         self._parts: list[QWidget] = []
         for index, (name, label) in enumerate((("exemplar", "Exemplar"), ("result", "Result"))):
             pane = PlanePane(f"spectrum-{name}", f"{label}'s spectrum", self._link)
@@ -158,6 +162,7 @@ class SpectrumDock(FramedDock):
         difference = answer.view == "difference"
         self.titles[0].setText(f"{self._result_title} above exemplar" if difference else "exemplar")
         self.titles[1].setText(self._result_title)
+        self._limit_planes(self._side)
         for pane, part, shown in zip(self.panes, self._parts, (answer.first, answer.second), strict=True):
             pane.show_picture(
                 None if shown is None else shown.picture, QRectF() if shown is None else QRectF(*shown.area)
@@ -226,7 +231,7 @@ class SpectrumDock(FramedDock):
 
     def _make_room(self, *_: object) -> None:
         """Where the dock is narrow, either the profiles or the peaks stand beside the pictures."""
-        wide = self.width() >= WIDE
+        wide = self.width() >= WIDE * text_scale(self)
         self.beside.setVisible(not wide)
         beside = self.beside.currentData()
         self.plots.setVisible(wide or beside == "profiles")
@@ -237,16 +242,24 @@ class SpectrumDock(FramedDock):
         super().resizeEvent(event)
         self._make_room()
 
+    def _limit_planes(self, side: int) -> None:
+        """Let no plane be wider than high, unless its title needs that."""
+        self._side = side
+        wide = [max(side, title.fontMetrics().horizontalAdvance(title.text()) + 4) for title in self.titles]
+        for part, width in zip(self._parts, wide, strict=True):
+            part.setMaximumWidth(width)
+        self._pictures.setMaximumWidth(sum(wide) + self.bar.sizeHint().width() + 12)
+
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Give the planes, which are squares, their width."""
         if watched is self.body and event.type() == QEvent.Type.Resize:
-            side = max(self.body.height() - self.titles[0].sizeHint().height() - 8, 90)
-            for part in self._parts:
-                part.setMaximumWidth(side)
-            self._pictures.setMaximumWidth(2 * side + self.bar.sizeHint().width() + 12)
+            side = max(self.body.height() - self.titles[0].fontMetrics().lineSpacing() - 8, 90)
+            self._limit_planes(side)
             tall = self.body.height() > 0.45 * self.body.width()
             ways = QBoxLayout.Direction
             self._plot_box.setDirection(ways.TopToBottom if tall else ways.LeftToRight)
+        elif event.type() == QEvent.Type.FontChange and watched in self.titles:
+            self._limit_planes(self._side)
         return super().eventFilter(watched, event)
 
     # The value under the cursor.

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from texlab.form.scales import box_step, decimals
 from texlab.style.numbers import parse_list
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip, tip_text
@@ -117,7 +118,7 @@ class AxisEditor(QWidget):
         for column, stretch in ((0, 3), (2, 3), (3, 2)):
             inner.setColumnStretch(column, stretch)
         for box in (self.first, self.last, self.count):
-            box.setMinimumWidth(58)
+            grow_with_text(box, 58, box.setMinimumWidth)
             box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         values = QVBoxLayout()
         values.setContentsMargins(0, 0, 0, 0)

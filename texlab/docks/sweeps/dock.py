@@ -22,6 +22,7 @@ from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactShee
 from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.numbers import duration, remaining
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
@@ -130,7 +131,7 @@ class SweepsDock(FramedDock):
         self.zoom.setSingleStep(ZOOM_STEP)
         self.zoom.setPageStep(3 * ZOOM_STEP)
         self.zoom.setValue(USUAL)
-        self.zoom.setFixedWidth(110)
+        grow_with_text(self.zoom, 110, self.zoom.setFixedWidth)
         self.zoom.valueChanged.connect(lambda side: self.sheet.set_side(side))
         self.zoom.actionTriggered.connect(self._zoomed)
         self.add_control(
@@ -145,6 +146,11 @@ class SweepsDock(FramedDock):
         replace_items(self.sorting, AS_VARIED)
         self.status = Label("")
         self.add_control(self.status, "status", "State of the sweep", "How far the sweep is")
+
+    def fold_controls(self, folded: bool) -> None:
+        """Leave the whole room to the sheet, or show what is varied again."""
+        super().fold_controls(folded)
+        self.panel.setVisible(not folded)
 
     # What there is to vary, and what came of it.
 

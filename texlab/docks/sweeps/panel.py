@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QComboBox, QGridLayout, QScrollArea, QSizePolicy, 
 
 from texlab.docks.sweeps.axis import AxisChoice, AxisEditor
 from texlab.state.sweeps import SweepPlan
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
@@ -69,7 +70,7 @@ class SweepPanel(QScrollArea):
         layout.setColumnStretch(1, 1)
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setFixedWidth(WIDTH)
+        grow_with_text(self, WIDTH, self.setFixedWidth)
         self.setWidget(inside)
         self.ready_box.activated.connect(lambda _: self._choose_sweep())
         for axis in (self.across, self.down):

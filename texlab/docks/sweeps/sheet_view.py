@@ -10,6 +10,7 @@ from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QHelpEvent, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QFrame, QMenu, QScrollArea, QWidget
 
+from texlab.style.text_size import smaller
 from texlab.style.theme import DARK
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import show_tip
@@ -396,7 +397,7 @@ class _Canvas(OwnKeys, QWidget):
     def _paint_error(self, painter: QPainter, box: QRect, sentence: str) -> None:
         usual = painter.font()
         small = QFont(usual)
-        small.setPointSizeF(max(6.0, usual.pointSizeF() * 0.85))
+        small.setPointSizeF(smaller(usual.pointSizeF(), 0.85, 6.0))
         painter.setFont(small)
         painter.setPen(QColor(self.theme.error))
         flags = Qt.TextFlag.TextWrapAnywhere if box.width() < NARROWEST else Qt.TextFlag.TextWordWrap

@@ -217,6 +217,7 @@ class DistanceView(OwnKeys, QWidget):
             painter.drawLine(QPointF(x, area.bottom()), QPointF(x, area.bottom() + 3))
             words = cell_text(tick)
             half = metrics.horizontalAdvance(words) / 2
+            x = min(max(x, half), self.width() - half)
             if x - half > free:
                 painter.setPen(QColor(self._theme.muted))
                 painter.drawText(QPointF(x - half, self.height() - metrics.descent() - 1), words)

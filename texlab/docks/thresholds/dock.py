@@ -19,6 +19,7 @@ from texlab.docks.thresholds.law_line import LawLine
 from texlab.docks.thresholds.rows import pasted, rows_text
 from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view, origin_of, table_field
 from texlab.state.intentions import EditField, Tell
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
@@ -81,6 +82,7 @@ class ThresholdsDock(FramedDock):
         self.cell_name.setWordWrap(True)
         self.passing = Label()
         self.passing.setObjectName("thresholds-passing")
+        self.passing.setWordWrap(True)
         self.measures = Label()
         self.measures.setObjectName("thresholds-measures")
         self.measures.setWordWrap(True)
@@ -95,7 +97,7 @@ class ThresholdsDock(FramedDock):
         self.law = LawLine("thresholds_law")
         self.law.edited.connect(self._edit_law)
         beside = QWidget()
-        beside.setFixedWidth(SIDE)
+        grow_with_text(beside, SIDE, beside.setFixedWidth)
         column = QVBoxLayout(beside)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)

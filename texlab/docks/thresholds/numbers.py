@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetricsF
 
+from texlab.style.text_size import smaller
+
 if TYPE_CHECKING:
     from PySide6.QtCore import QRectF
     from PySide6.QtGui import QPainter
@@ -63,6 +65,6 @@ class NumberWriter:
 def _made(font: QFont, size: float, *, bold: bool, stretch: int = 100) -> tuple[QFont, QFontMetricsF]:
     made = QFont(font)
     made.setStretch(stretch)
-    made.setPointSizeF(font.pointSizeF() * size)
+    made.setPointSizeF(smaller(font.pointSizeF(), size, 0.0))
     made.setBold(bold)
     return made, QFontMetricsF(made)

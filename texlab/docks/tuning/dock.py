@@ -25,6 +25,7 @@ from texlab.docks.tuning.points import (
 from texlab.state.intentions import RunTuning, StopTuning, TakeCell
 from texlab.state.scene import Scene
 from texlab.state.tuning import TuningPlan
+from texlab.style.text_size import grow_with_text
 from texlab.widgets.picture_area import PictureArea
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import SERIES, Plot
@@ -66,12 +67,12 @@ class TuningDock(FramedDock):
         self.plot.left.connect(lambda: self._point(None))
         self.plot.clicked.connect(self._clicked)
         self.picture = PictureArea("tuning-picture", "", "The result of the point under the pointer")
-        self.picture.setFixedWidth(TOLD)
+        grow_with_text(self.picture, TOLD, self.picture.setFixedWidth)
         self.told = Label("")
         self.told.setObjectName("tuning-told")
         self.told.setWordWrap(True)
         self.told.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.told.setFixedWidth(TOLD)
+        grow_with_text(self.told, TOLD, self.told.setFixedWidth)
         self.progress = QProgressBar()
         self.progress.setObjectName("tuning-progress")
         self.progress.setAccessibleName("Progress of the search")

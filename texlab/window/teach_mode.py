@@ -1,0 +1,199 @@
+"""Teach: large text, few pictures, one tab, panels over the pictures, and a glass to draw on."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QKeySequence
+
+from texlab.docks.frame import FramedDock
+from texlab.style.text_size import next_zoom
+from texlab.window.chalk import Chalk
+from texlab.window.layouts import HEIGHTS, SIDES
+from texlab.window.notes_window import NotesWindow
+from texlab.window.overlay import Overlay
+
+if TYPE_CHECKING:
+    from texlab.columns.workspace import Workspace
+    from texlab.state.session import Session
+    from texlab.window.main_window import MainWindow
+
+EXEMPLAR = 0
+# The presenter stands nearer than the first row.
+NOTES_FACTOR = 1.2
+ON_GLASS = ("ink", "halo", "spotlight")
+
+
+class TeachMode(QObject):
+    """Carries out the commands of teaching; what it hides comes back with another layout."""
+
+    def __init__(self, window: MainWindow, workspace: Workspace, session: Session) -> None:
+        super().__init__(window)
+        self._window = window
+        self._workspace = workspace
+        self._session = session
+        self.chalk = Chalk(window)
+        self.overlays = {
+            name: Overlay(window.docks[name], window, at_right=name == "parameters") for name in SIDES
+        }
+        self.notes = NotesWindow(window.actions_by_name, window, NOTES_FACTOR * window.layouts.usual_points)
+        self._kept: set[int] = set()
+        self._hidden: set[int] = set()
+        self._chosen = 0
+        self._folded = True
+        self._was_full = self._was_on = False
+        layouts, actions = window.layouts, window.actions_by_name
+        layouts.leaving, layouts.changed = self._close_overlays, self.show_layout
+        actions["text-larger"].setShortcuts([QKeySequence("Ctrl++"), QKeySequence("Ctrl+=")])
+        for name, call in (
+            ("text-larger", lambda: layouts.set_zoom(next_zoom(layouts.zoom, 1))),
+            ("text-smaller", lambda: layouts.set_zoom(next_zoom(layouts.zoom, -1))),
+            ("text-usual", lambda: layouts.set_zoom(1.0)),
+            ("next-tab", partial(self.step_tab, 1)),
+            ("previous-tab", partial(self.step_tab, -1)),
+            ("overlay-gallery", partial(self.toggle_side, "gallery")),
+            ("overlay-parameters", partial(self.toggle_side, "parameters")),
+            ("tab-controls", self.toggle_controls),
+            ("beside", self.toggle_beside),
+            ("ink-undo", self.chalk.undo),
+            ("ink-clear", self.chalk.clear),
+            *((f"sight-{place}", partial(self.toggle_place, place)) for place in range(10)),
+        ):
+            actions[name].triggered.connect(lambda _=False, call=call: call())
+        actions["full-screen"].triggered.connect(self.set_full_screen)
+        actions["tab-alone"].toggled.connect(self.set_tab_alone)
+        actions["notes"].triggered.connect(self.notes.set_open)
+        actions["ink"].toggled.connect(self.chalk.set_drawing)
+        actions["halo"].toggled.connect(self.chalk.set_halo)
+        actions["spotlight"].toggled.connect(self.chalk.set_spotlight)
+        # It comes with every change, and also when only another column is chosen.
+        session.selected.connect(lambda _: self._show_columns())
+        session.changed.connect(lambda *_: self._show_columns())
+        self.show_layout()
+
+    @property
+    def on(self) -> bool:
+        """Whether the layout is Teach."""
+        return self._window.layouts.current == "teach"
+
+    def close(self) -> None:
+        """Follow the pointer no more, and give borrowed panels back."""
+        self._close_overlays()
+        self.chalk.put_away()
+        self.notes.close()
+        self.notes.deleteLater()
+
+    def show_layout(self) -> None:
+        """Show only what belongs to the layout."""
+        window = self._window
+        window.toolbar.setVisible(not self.on)
+        window.statusBar().setVisible(not self.on)
+        self._workspace.exemplar.set_quiet(self.on)
+        self._fold(self.on and self._folded)
+        if not self.on:
+            window.actions_by_name["tab-alone"].setChecked(False)
+            for name in ON_GLASS:
+                window.actions_by_name[name].setChecked(False)
+            self.chalk.put_away()
+            self._kept.clear()
+            self._hidden.clear()
+            if self._was_on:
+                self._workspace.show_only(None)
+                self.notes.set_open(False)
+        elif not self._was_on and self.notes.other_screen() is not None:
+            self.notes.set_open(True)
+        self._was_on = self.on
+        self._show_columns()
+
+    # Columns.
+
+    def toggle_beside(self) -> None:
+        """Keep the chosen column in sight when another one is chosen, or not."""
+        self._kept ^= {self._session.selected_id}
+        self._show_columns()
+
+    def toggle_place(self, place: int) -> None:
+        """Show or hide the column at a place, 1, 2, ...; 0 is the exemplar."""
+        columns = self._session.state.columns
+        if not self.on or place > len(columns):
+            return
+        wanted = columns[place - 1].id if place else EXEMPLAR
+        if wanted == EXEMPLAR:
+            self._hidden ^= {EXEMPLAR}
+        elif wanted in self._shown():
+            self._kept -= {wanted}
+            self._hidden |= {wanted}
+        else:
+            self._kept |= {wanted}
+            self._hidden -= {wanted}
+        self._show_columns()
+
+    def _shown(self) -> tuple[int, ...]:
+        chosen = self._session.selected_id
+        known = (column.id for column in self._session.state.columns)
+        return tuple(each for each in known if each not in self._hidden and (each == chosen or each in self._kept))
+
+    def _show_columns(self) -> None:
+        chosen = self._session.selected_id
+        if chosen != self._chosen:
+            # Who chooses a column wants to see it.
+            self._hidden.discard(chosen)
+            self._chosen = chosen
+        self._window.actions_by_name["beside"].setChecked(chosen in self._kept)
+        if self.on:
+            self._workspace.show_only(self._shown(), exemplar=EXEMPLAR not in self._hidden)
+
+    # Tabs and panels.
+
+    def step_tab(self, by: int) -> None:
+        """Go to the next tab, or the one before."""
+        names = [name for name in self._window.docks if name not in SIDES]
+        front = self._window.front_dock()
+        place = names.index(front) if front else -1 if by > 0 else 0
+        if names:
+            self._window.raise_dock(names[(place + by) % len(names)])
+
+    def toggle_side(self, name: str) -> None:
+        """Show the gallery or the parameters, over the pictures when teaching, or take them away."""
+        if self.on:
+            self.overlays[name].set_open(not self.overlays[name].is_open)
+        else:
+            dock = self._window.docks[name]
+            dock.setVisible(not dock.isVisible())
+
+    def _close_overlays(self) -> None:
+        for overlay in self.overlays.values():
+            overlay.set_open(False)
+
+    def toggle_controls(self) -> None:
+        """Show the controls of the tabs, or their pictures alone."""
+        self._folded = not self._folded
+        self._fold(self.on and self._folded)
+
+    def _fold(self, folded: bool) -> None:
+        for dock in self._window.findChildren(FramedDock):
+            dock.fold_controls(folded and dock.folds)
+
+    def set_tab_alone(self, alone: bool) -> None:
+        """Give the open tab the room of the pictures too, or take it back."""
+        layouts = self._window.layouts
+        if alone:
+            self._window.strip.set_open(True)
+        self._workspace.setVisible(not alone)
+        if self._window.strip.is_open:
+            layouts.share_height(1.0 if alone else HEIGHTS.get(layouts.current, HEIGHTS["explore"]))
+
+    # The screen.
+
+    def set_full_screen(self, full: bool) -> None:
+        """Use the whole screen, without menus; afterwards the window is as it was."""
+        self._window.menuBar().setVisible(not full)
+        if full:
+            self._was_full = self._window.isMaximized()
+            self._window.showFullScreen()
+        elif self._was_full:
+            self._window.showMaximized()
+        else:
+            self._window.showNormal()
