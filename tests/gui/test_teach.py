@@ -76,10 +76,12 @@ def teaching(explorer: Any) -> Any:
 
 def test_letters_of_every_tab_at_every_size(teaching: Any, qtbot: Any) -> None:
     window = teaching.window
-    for size in SCREENS:
+    tabs = [name for name in window.docks if name not in SIDES]
+    for turn, size in enumerate(SCREENS):
         window.resize(*size)
         qtbot.waitUntil(lambda: capitals(window.font()) >= window.height() / 40)
-        for name in [name for name in window.docks if name not in SIDES]:
+        # Sizes take turns: every tab is seen at one of them.
+        for name in tabs[turn :: len(SCREENS)]:
             window.raise_dock(name)
             wait_idle(qtbot, teaching)
             assert [other for other, dock in window.docks.items() if dock.isVisible()] == [name]
