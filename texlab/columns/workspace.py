@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint, QRect, QSize, QTimer, Signal
-from PySide6.QtWidgets import QFrame, QRubberBand, QScrollArea
+from PySide6.QtWidgets import QApplication, QFrame, QRubberBand, QScrollArea
 
 from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
@@ -172,9 +172,13 @@ class Workspace(QScrollArea):
             cells.insert(0, self.exemplar)
         if self._enlarged is not None:
             cells = [self.exemplar if self._enlarged == EXEMPLAR else self.columns[self._enlarged]]
-        for view in (self.exemplar, *self.columns.values()):
-            if view not in cells:
-                view.hide()
+        gone = [view for view in (self.exemplar, *self.columns.values()) if view not in cells]
+        here = QApplication.focusWidget()
+        if here is not None and any(view is here or view.isAncestorOf(here) for view in gone):
+            # The keyboard would go on to another column, and choose it.
+            self.setFocus()
+        for view in gone:
+            view.hide()
         self.grid.show_cells(cells)
         self.place()
 

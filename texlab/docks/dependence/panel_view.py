@@ -33,7 +33,8 @@ class PanelView(QWidget):
         self.title = Label("")
         self.title.setObjectName(f"{name}-title")
         # The longest title must not widen the window.
-        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
+        self.title.setWordWrap(True)
         self.joint = JointView(f"{name}-histogram", f"Histogram of the {label}")
         self.pane = PicturePane(f"{name}-picture", f"Pixels of the {label} in the chosen cells", link)
         self.pane.hovered.connect(self._point)
