@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 ROW_MARGIN = 2
 
 
-
 def make_quiet(table: QTableWidget) -> None:
     """Make a table that is only read: no frame, no grid, columns as wide as their numbers; Tab leaves it."""
     table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
