@@ -150,7 +150,9 @@ class TeachMode(QObject):
     def step_tab(self, by: int) -> None:
         """Go to the next tab, or the one before."""
         names = [name for name in self._window.docks if name not in SIDES]
-        front = self._window.front_dock()
+        # One that has just come is seen when it is painted.
+        shown = [name for name in names if self._window.docks[name].isVisible()]
+        front = self._window.front_dock() or (shown[0] if shown else "")
         place = names.index(front) if front else -1 if by > 0 else 0
         if names:
             self._window.raise_dock(names[(place + by) % len(names)])
