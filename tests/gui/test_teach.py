@@ -103,6 +103,7 @@ def check_zoom_reaches_plots_and_mosaics(teaching: Any, qtbot: Any) -> None:
     window.actions_by_name["text-usual"].trigger()
     window.actions_by_name["text-smaller"].trigger()
     assert capitals(plot.axes["bottom"].style["tickFont"]) < before
+    window.actions_by_name["text-usual"].trigger()
 
 
 def check_only_what_is_chosen_is_in_sight(teaching: Any, qtbot: Any) -> None:
