@@ -78,9 +78,6 @@ class NotesWindow(QWidget):
         self.sentence = _label("notes-sentence", "")
         self.next = _label("notes-next", "muted")
         self.words = {name: _label(f"notes-{name}", "") for name in HEADS}
-        large = self.font()
-        large.setPointSizeF(points * SENTENCE_FACTOR)
-        self.sentence.setFont(large)
         head = QHBoxLayout()
         head.addWidget(self.place, 1)
         head.addWidget(self.readiness)
@@ -113,6 +110,12 @@ class NotesWindow(QWidget):
         layout.addWidget(scroll, 1)
         layout.addWidget(self.next)
         layout.addWidget(bar)
+        # A style sheet keeps them from taking the font of the window.
+        for part in self.findChildren(QWidget):
+            part.setFont(own)
+        large = self.font()
+        large.setPointSizeF(points * SENTENCE_FACTOR)
+        self.sentence.setFont(large)
         self.resize(SIZE)
 
     def show_lesson(self, lesson: LessonScene) -> None:
