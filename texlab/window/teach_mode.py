@@ -43,6 +43,7 @@ class TeachMode(QObject):
         self._hidden: set[int] = set()
         self._chosen = 0
         self._folded = True
+        self._share = HEIGHTS["teach"]
         self._was_full = self._was_on = False
         layouts, actions = window.layouts, window.actions_by_name
         layouts.leaving, layouts.changed = self._close_overlays, self.show_layout
@@ -180,12 +181,14 @@ class TeachMode(QObject):
 
     def set_tab_alone(self, alone: bool) -> None:
         """Give the open tab the room of the pictures too, or take it back."""
-        layouts = self._window.layouts
+        layouts, front = self._window.layouts, self._window.docks.get(self._window.front_dock())
         if alone:
             self._window.strip.set_open(True)
+            usual = HEIGHTS.get(layouts.current, HEIGHTS["explore"])
+            self._share = front.height() / self._window.height() if front is not None else usual
         self._workspace.setVisible(not alone)
         if self._window.strip.is_open:
-            layouts.share_height(1.0 if alone else HEIGHTS.get(layouts.current, HEIGHTS["explore"]))
+            layouts.share_height(1.0 if alone else self._share)
 
     # The screen.
 
