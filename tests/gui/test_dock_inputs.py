@@ -80,7 +80,9 @@ def test_it_asks_for_what_the_method_takes(here: Watched) -> None:
     assert not dock.controls.isVisible()
     here.column = column(method="efros-leung")
     here.feed()
-    assert [dock.which.itemData(place) for place in range(dock.which.count())] == ["start", "mask", "region"]
+    assert [dock.which.itemData(place) for place in range(dock.which.count())] == [
+        "start", "mask", "blend", "region",
+    ]  # fmt: skip
 
 
 def test_a_texture_of_the_gallery(here: Watched) -> None:

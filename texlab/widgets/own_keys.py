@@ -37,6 +37,11 @@ def is_plain(event: QKeyEvent) -> bool:
     return event.modifiers() & ~_BESIDE == Qt.KeyboardModifier.NoModifier
 
 
+def is_bare(event: QKeyEvent) -> bool:
+    """Return whether no other key is held, not even Shift."""
+    return is_plain(event) and not event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+
+
 def begins_number(event: QKeyEvent) -> bool:
     """Return whether a number begins with the typed character."""
     text = event.text()

@@ -281,6 +281,10 @@ class MainWindow(QMainWindow):
         """Put a bar below the images."""
         self._middle_layout.addWidget(bar)
 
+    def settle_middle(self) -> None:
+        """Let what was shown or hidden in the middle count at once."""
+        self._middle_layout.activate()
+
     def add_zoom(self, label: str, box: QWidget) -> None:
         """Put a box with a word before it into the status bar."""
         word = Label(label)

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtWidgets import QFrame, QVBoxLayout, QWidget
 
+from texlab.widgets.own_keys import OwnKeys
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
+    from PySide6.QtGui import QKeyEvent
     from PySide6.QtWidgets import QDockWidget
 
 # Parts of the width and the height of what it lies over.
 WIDTH, HEIGHT = 0.4, 0.92
 
 
-class Overlay(QFrame):
+class Overlay(OwnKeys, QFrame):
     """Holds the widget of a dock over its parent, at the left or the right edge.
 
     Parameters
@@ -82,12 +84,13 @@ class Overlay(QFrame):
             self._place()
         return super().eventFilter(watched, event)
 
-    def event(self, event: QEvent) -> bool:
-        """Close with Esc, which is nobody else's while the keyboard is in here."""
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
-            event.accept()
-            return True
-        if event.type() == QEvent.Type.KeyPress and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
+    def wants_key(self, event: QKeyEvent) -> bool:
+        """Take Esc, which is nobody else's while the keyboard is in here."""
+        return event.key() == Qt.Key.Key_Escape
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Close with Esc."""
+        if self.wants_key(event):
             self.set_open(False)
-            return True
-        return super().event(event)
+        else:
+            super().keyPressEvent(event)

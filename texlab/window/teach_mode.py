@@ -187,6 +187,8 @@ class TeachMode(QObject):
             usual = HEIGHTS.get(layouts.current, HEIGHTS["explore"])
             self._share = front.height() / self._window.height() if front is not None else usual
         self._workspace.setVisible(not alone)
+        # Nobody keeps room for what is hidden.
+        self._window.settle_middle()
         if self._window.strip.is_open:
             layouts.share_height(1.0 if alone else self._share)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPen
 
-from texlab.widgets.own_keys import OwnKeys, is_plain
+from texlab.widgets.own_keys import OwnKeys, is_bare
 from texlab.widgets.picture_area import PictureArea
 from texlab_core.engine.inputs import Crop
 
@@ -100,7 +100,7 @@ class CropPane(OwnKeys, PictureArea):
 
     def wants_key(self, event: QKeyEvent) -> bool:
         """Return whether it takes the crop away."""
-        return is_plain(event) and event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace)
+        return is_bare(event) and event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Use the whole picture."""

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.widgets.heat_map import HeatMap
-from texlab.widgets.own_keys import OwnKeys, begins_number, is_plain
+from texlab.widgets.own_keys import OwnKeys, begins_number, is_bare, is_plain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,7 +40,11 @@ def steps_of(event: QKeyEvent) -> int:
 
 def changes_number(event: QKeyEvent) -> bool:
     """Return whether a key changes the chosen number, empties it or begins to type one."""
-    return begins_number(event) or (is_plain(event) and (event.key() in KEYS or event.key() in OTHERS))
+    return (
+        begins_number(event)
+        or (is_plain(event) and event.key() in KEYS)
+        or (is_bare(event) and event.key() in OTHERS)
+    )
 
 
 class CodeGrid(HeatMap):

@@ -11,7 +11,7 @@ from PySide6.QtGui import QHelpEvent, QKeyEvent, QKeySequence, QMouseEvent
 from texlab.docks.thresholds.editable import EditableTable
 from texlab.docks.thresholds.selection import Selection
 from texlab.docks.thresholds.table import changed, moved, rounded
-from texlab.widgets.own_keys import OwnKeys, begins_number, is_plain
+from texlab.widgets.own_keys import OwnKeys, begins_number, is_bare, is_plain
 from texlab.widgets.plain import set_tip, show_tip
 
 if TYPE_CHECKING:
@@ -250,7 +250,9 @@ class TableEditor(OwnKeys, EditableTable):
         control = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier == Qt.KeyboardModifier.ControlModifier
         if (key in ARROWS and (control or is_plain(event))) or any(map(event.matches, SEQUENCES)):
             return True
-        return begins_number(event) or (is_plain(event) and (key in STEPS or key in self._keys))
+        if key in self._keys:
+            return is_bare(event)
+        return begins_number(event) or (is_plain(event) and key in STEPS)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Move, change, type, reset, lock, mirror."""
