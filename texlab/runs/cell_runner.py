@@ -7,14 +7,15 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, Signal
-
+from texlab.runs.late_worker import LateWorker
 from texlab.runs.worker import Worker
 from texlab_core.errors import InputError
 from texlab_core.warming import Need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from PySide6.QtCore import QObject
 
     from texlab.runs.column_run import TaskLike
     from texlab.runs.slots import Slots
@@ -63,7 +64,7 @@ class Teller:
         return CellsMade(tuple(self._made), 1.0, more)
 
 
-class CellRunner(QObject):
+class CellRunner(LateWorker):
     """Runs what was asked for last instead of what ran before; ``changed()`` tells that ``scene`` is another one.
 
     Parameters
@@ -76,8 +77,6 @@ class CellRunner(QObject):
         Places on the cores, and what is loaded.
     """
 
-    changed = Signal()
-
     def __init__(
         self, name: str, scene: CellsScene, slots: Slots, warmth: Warmth, parent: QObject | None = None
     ) -> None:
@@ -86,23 +85,6 @@ class CellRunner(QObject):
         self._name = name
         self._slots = slots
         self._warmth = warmth
-        # Most sessions never ask for any, and need no thread for it.
-        self._worker: Worker | None = None
-
-    def stop(self) -> None:
-        """Stop; what has finished stays."""
-        if self._worker is not None:
-            self._worker.cancel()
-
-    def leave(self) -> None:
-        """Ask the thread to end, without waiting."""
-        if self._worker is not None:
-            self._worker.leave()
-
-    def close(self) -> None:
-        """Stop the thread and wait for its end."""
-        if self._worker is not None:
-            self._worker.close()
 
     def _begin(
         self,

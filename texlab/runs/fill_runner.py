@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtCore import QObject, Signal
 
+from texlab.runs.late_worker import LateWorker
 from texlab.runs.worker import Worker
 from texlab.state.filling import FillScene
 from texlab.style.pictures import Picture, to_picture
@@ -18,6 +18,8 @@ from texlab_core.methods.efros_leung.filling import filled_of
 from texlab_core.warming import Need
 
 if TYPE_CHECKING:
+    from PySide6.QtCore import QObject
+
     from texlab.runs.column_run import TaskLike
     from texlab.runs.slots import Slots
     from texlab.state.filling import FillPlan
@@ -66,18 +68,14 @@ class FillRun:
         return filled_of(result, self.plan.box)
 
 
-class FillRunner(QObject):
+class FillRunner(LateWorker):
     """Runs one fill, the newest instead of any other; ``changed()`` tells that ``scene`` is another one."""
-
-    changed = Signal()
 
     def __init__(self, slots: Slots, warmth: Warmth, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.scene = FillScene()
         self._slots = slots
         self._warmth = warmth
-        # Most sessions fill nothing, and need no thread for it.
-        self._worker: Worker | None = None
 
     def start(self, plan: FillPlan) -> None:
         """Fill."""
@@ -93,25 +91,10 @@ class FillRunner(QObject):
         self._worker.submit(FillRun(plan), first=first)
         self.changed.emit()
 
-    def stop(self) -> None:
-        """Stop; the picture stays as it was."""
-        if self._worker is not None:
-            self._worker.cancel()
-
     @property
     def busy(self) -> bool:
         """Whether it fills."""
         return self.scene.status == "running"
-
-    def leave(self) -> None:
-        """Ask the thread to end, without waiting."""
-        if self._worker is not None:
-            self._worker.leave()
-
-    def close(self) -> None:
-        """Stop the thread and wait for its end."""
-        if self._worker is not None:
-            self._worker.close()
 
     def _make_worker(self) -> Worker:
         worker = Worker("fill", self._slots, parent=self)
