@@ -27,7 +27,7 @@ from texlab_core.sheets.sweep_recipes import (
     sweep_recipe_from_json,
 )
 from texlab_core.sheets.sweep_running import run_sweep
-from texlab_core.sheets.sweep_sheet import sweep_sheet
+from texlab_core.sheets.sweep_sheet import sweep_sheet, write_sheet
 
 pytestmark = pytest.mark.usefixtures("stub")
 
@@ -89,6 +89,23 @@ def test_a_sweep_describes_itself_completely():
     assert again.base.inputs["exemplar"].sha256 == chosen.sha256
 
 
+def test_the_sheet_of_a_sweep_holds_the_numbers_of_its_cells(tmp_path):
+    """Those that there are, in their places; a cell that failed has none, and what is no number is left out."""
+    chosen = as_exemplar("gallery:stochastic-gravel", scale=0.5, crop=Crop(top=0, left=0, height=16, width=16))
+    job = Job(method="stub", inputs={"exemplar": chosen}, params=StubParams(), size=(8, 9), seed=4)
+    sweep = sweep_of(job, ["level=1,2,3"])
+    numbers = {"w1-bands": 0.25, "laid-down": float("nan")}
+    cells = [
+        Cell(index=0, job=sweep.jobs[0], values={"level": 1}, error="It failed."),
+        Cell(index=2, job=sweep.jobs[2], values={"level": 3}, measures=numbers),
+    ]
+    for name in ("sheet.png", "sheet.svg", "sheet.pdf"):
+        write_sheet(tmp_path / name, sweep, cells)
+        assert find_sweep(str(tmp_path / name)).measures == ({}, {}, {"w1-bands": 0.25})
+    write_sheet(tmp_path / "none.png", sweep, [])
+    assert find_sweep(str(tmp_path / "none.png")).measures == ()
+
+
 @pytest.mark.parametrize(
     ("data", "says"),
     [
@@ -120,6 +137,9 @@ def test_a_sweep_describes_itself_completely():
         (document(vary=[{"name": "border", "from": 0, "to": 1, "count": 2}]), "a list of values for border"),
         (document(inputs={"second": {"name": "gallery:stochastic-rock"}}), "inputs: has no place here"),
         (document(inputs=[1]), "inputs: has no place here"),
+        (document(measures={}), "measures: must be a list"),
+        (document(measures=[{}] * 7), "measures: must hold the numbers of"),
+        (document(vary=[{"name": "level", "values": [1]}], measures=[{"d": "1"}]), "a few numbers by name"),
         (document(size=[1, 2]), "size: must be a width and a height"),
         (document(size={"width": 0, "height": 9}), "size: must be height and width"),
         (document(seed=-1), "seed: must be a whole number"),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from texlab_core.documents.recipe import known_measures, measures_from_json
 from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
 from texlab_core.engine.job import Job, check_seed
 from texlab_core.engine.params import frozen_mapping
@@ -22,11 +24,12 @@ from texlab_core.sheets.figure import FIGURE_SUFFIXES
 from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method
+    from texlab_core.sheets.sweep import Cell
 
 FORMAT = "texlab-sweep"
 VERSION = 1
@@ -44,6 +47,7 @@ _KEYS = (
     "seed",
     "exemplar",
     "inputs",
+    "measures",
     "versions",
 )
 _Data = dict[str, Any]
@@ -114,6 +118,9 @@ class SweepRecipe:
         What it was made for; None leaves the choice to the user.
     inputs
         The further images of the method by their names.
+    measures
+        Of a sheet: numbers about each cell's result by the ids of their measures, row by row; nothing for a cell
+        that failed or was not run. Empty for a sweep that is still to be run.
     """
 
     name: str
@@ -125,6 +132,7 @@ class SweepRecipe:
     seed: int = 0
     exemplar: ExemplarChoice | None = None
     inputs: Mapping[str, ExemplarChoice] = field(default_factory=dict)
+    measures: tuple[Mapping[str, float], ...] = ()
 
     @property
     def params(self) -> Params:
@@ -152,9 +160,10 @@ class SweepRecipe:
         )
 
     @classmethod
-    def of(cls, sweep: Sweep, name: str, note: str = "") -> SweepRecipe:
-        """Describe a sweep."""
+    def of(cls, sweep: Sweep, name: str, note: str = "", cells: Sequence[Cell] = ()) -> SweepRecipe:
+        """Describe a sweep, with the numbers about the cells that are given."""
         base = sweep.base
+        known = {cell.index: known_measures(cell.measures) for cell in cells if cell.measures}
         return cls(
             name=name,
             method=base.method,
@@ -171,6 +180,9 @@ class SweepRecipe:
                     if role != "exemplar" and isinstance(each, ImageInput)
                 }
             ),
+            measures=tuple(frozen_mapping(known.get(index, {})) for index in range(len(sweep.jobs)))
+            if known
+            else (),
         )
 
     def to_json(self) -> _Data:
@@ -187,6 +199,8 @@ class SweepRecipe:
             data["exemplar"] = self.exemplar.to_json()
         if self.inputs:
             data["inputs"] = {role: choice.to_json() for role, choice in self.inputs.items()}
+        if self.measures:
+            data["measures"] = [dict(numbers) for numbers in self.measures]
         return data
 
 
@@ -220,16 +234,18 @@ def _from_json(given: object) -> SweepRecipe:
     vary = _typed(data, "vary", list)
     if not 1 <= len(vary) <= 2:
         raise RecipeError(f"vary: must hold one or two knobs, got {len(vary)}.")
+    axes = tuple(_axis(each, method.params) for each in vary)
     return SweepRecipe(
         name=_text(data, "name", 80),
         method=method.id,
-        axes=tuple(_axis(each, method.params) for each in vary),
+        axes=axes,
         parameters=frozen_mapping({name: complete[name] for name in named}),
         note=_text(data, "note", 4000, ""),
         size=None if data.get("size") is None else size_from_json(data["size"], method.dimensions),
         seed=check_seed(data.get("seed", 0)),
         exemplar=_exemplar(data.get("exemplar")),
         inputs=_inputs(data.get("inputs", {}), method),
+        measures=_measures(_typed(data, "measures", list, []), math.prod(len(axis.values) for axis in axes)),
     )
 
 
@@ -270,6 +286,12 @@ def _inputs(data: object, method: Method) -> Mapping[str, ExemplarChoice]:
         named = f"may name {', '.join(sorted(images))}" if images else "has no place here"
         raise RecipeError(f"inputs: {named} for {method.title}, got {strict_json.shorten(data)}.")
     return frozen_mapping({role: _choice(each, role) for role, each in data.items()})
+
+
+def _measures(data: list[Any], cells: int) -> tuple[Mapping[str, float], ...]:
+    if len(data) not in (0, cells):
+        raise RecipeError(f"measures: must hold the numbers of {cells} cells, got {len(data)}.")
+    return tuple(measures_from_json(each) for each in data)
 
 
 def _exemplar(data: object) -> ExemplarChoice | None:

@@ -93,7 +93,7 @@ def write_sheet(
     largest: int = LARGEST_CELL,
     look: Figure | None = None,
 ) -> None:
-    """Write the contact sheet, which carries the sweep, so that it can be run again.
+    """Write the contact sheet, which carries the sweep, so that it can be run again, and the numbers of its cells.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def write_sheet(
     from texlab_core.sheets.sweep_recipes import TEXT_KEY, SweepRecipe
 
     across = sheet_columns(sweep, columns)
-    recipe = SweepRecipe.of(sweep, name, note).to_json() | {"versions": dict(versions())}
+    recipe = SweepRecipe.of(sweep, name, note, cells).to_json() | {"versions": dict(versions())}
     text = packed(recipe)
     if is_figure(path):
         heads = _heads(sweep)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.errors import InputError
-from texlab_core.work.tasks import go_on
-from texlab_core.work.threads import workers
+from texlab_core.transforms import fourier
+from texlab_core.work.tasks import finish, go_on
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -62,7 +62,7 @@ def local_frequency(plane: Plane, look: Callable[[], None] = go_on) -> LocalFreq
     plane
         (H, W) float32, at least 16 pixels a side; mirrored at its borders.
     look
-        Called between the filters; may raise to stop.
+        Called between the pieces of the work; may raise to stop.
 
     Raises
     ------
@@ -81,7 +81,9 @@ def local_frequency(plane: Plane, look: Callable[[], None] = go_on) -> LocalFreq
     centred = plane - np.float32(plane.mean(dtype=np.float64))
     padded = cv2.copyMakeBorder(centred, margin, margin, margin, margin, cv2.BORDER_REFLECT_101)
     size = (fft.next_fast_len(padded.shape[0]), fft.next_fast_len(padded.shape[1]))
-    spectrum = fft.fft2(padded, s=size, workers=workers())
+    extended = np.zeros(size, np.float32)
+    extended[: padded.shape[0], : padded.shape[1]] = padded
+    spectrum = finish(fourier.fft2(extended), look)
     v, u = (np.fft.fftfreq(count).astype(np.float32) for count in size)
     energies = np.empty((len(WAVELENGTHS), height, width), np.float32)
     best = np.zeros((height, width), np.float32)
@@ -90,10 +92,9 @@ def local_frequency(plane: Plane, look: Callable[[], None] = go_on) -> LocalFreq
         strongest = np.zeros((height, width), np.float32)
         turned, summed = np.zeros_like(vector), np.zeros_like(total)
         for k in range(ORIENTATIONS):
-            look()
             angle = math.pi * k / ORIENTATIONS
             gains = _gain(u, math.cos(angle), v, math.sin(angle), wavelength)
-            values = fft.ifft2(spectrum * gains, overwrite_x=True, workers=workers())
+            values = finish(fourier.ifft2(spectrum * gains), look)
             inside = values[margin : margin + height, margin : margin + width]
             energy = np.square(inside.real) + np.square(inside.imag)
             energy = cv2.GaussianBlur(energy, (0, 0), SMOOTHING, borderType=cv2.BORDER_REFLECT_101)
