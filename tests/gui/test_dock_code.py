@@ -11,7 +11,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QFileDialog
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.spectral.code import EDITED, CodeDock, encoded
+from texlab.docks.spectral.code import EDITED, CodeDock
+from texlab.docks.spectral.code_answer import encoded
 from texlab.docks.spectral.code_numbers import Number, differs, dragged, limits, value, values, with_value
 from texlab.state.intentions import EditInputs
 from texlab.style.theme import DARK, LIGHT

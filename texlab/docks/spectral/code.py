@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Recent, Same
+from texlab.docks.spectral.code_answer import CodeAnswer, edit_code, encoded, given_code
 from texlab.docks.spectral.code_numbers import (
     COLUMNS,
     SIZES,
@@ -35,98 +35,33 @@ from texlab.docks.spectral.code_numbers import (
     with_value,
 )
 from texlab.docks.spectral.code_views import CodeGrid, HistogramBars
+from texlab.docks.spectral.code_words import (
+    ANGLE_NAMES,
+    HEADINGS,
+    HINT,
+    OCTAVE_NAMES,
+    RADIAL,
+    RESIDUAL_NAMES,
+    TIPS,
+    short,
+)
 from texlab.state.intentions import AskOnce, EditInputs, Open, Tell
 from texlab.style.colouring import SEQUENTIAL_TABLE
 from texlab.style.numbers import number as digits
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
-from texlab_core.engine.inputs import DataInput
-from texlab_core.transforms.gabor_bank import CENTRE_FREQUENCIES, CENTRE_ORIENTATIONS, WIDTHS
+from texlab_core.transforms.gabor_bank import WIDTHS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.state.scene import ColumnScene, Scene
-    from texlab_core.engine.steps import FloatImage
+    from texlab.state.scene import Scene
+    from texlab_core.engine.inputs import DataInput
     from texlab_core.methods.spectral.choices import BandwidthAxes, BandwidthMeasure
     from texlab_core.methods.spectral.code import MsgCode
 
 EDITED = "edited code"
 FILES = "MSG codes (*.msg.json);;JSON (*.json);;All files (*)"
-OCTAVE_NAMES = [f"1/{round(1 / frequency)}" for frequency in CENTRE_FREQUENCIES]
-ANGLE_NAMES = [f"{angle:.0f}°" for angle in CENTRE_ORIENTATIONS]
-RESIDUAL_NAMES = ["mean", "u axis", "v axis", "falling", "rising"]
-HINT = (
-    "Drag a cell up or down (Shift: finely), type a number, or press + and -; Delete empties it. "
-    "A corner marks what is not as it was measured."
-)
-TIPS: dict[Group, str] = {
-    "energy": "Rms of the 16 Gabor channels in per cent of the mean gray level (Table 2 of the paper). "
-    "The histogram sets the contrast of the whole, so that the proportions count.",
-    "u": "Equivalent bandwidth along the horizontal frequency axis in per cent of the filter's width; "
-    "white noise has 71, a pure wave nearly 0.",
-    "v": "Equivalent bandwidth along the vertical frequency axis in per cent of the filter's width.",
-    "residual": "The low-pass residual: mean gray level, and mean moduli on both axes and in both quadrants.",
-    "histogram": "The histogram in 16 numbers, from black to white. Lines: the exemplar's.",
-}
-HEADINGS: dict[Group, str] = {
-    "energy": "Energies, % of mean",
-    "u": "Bandwidths u, % of filter",
-    "v": "Bandwidths v, % of filter",
-    "residual": "Residual",
-    "histogram": "Histogram",
-}
-
-# Where the bandwidths belong to the waves of each channel.
-RADIAL: dict[Group, str] = HEADINGS | {
-    "u": "Radial bandwidths, % of filter",
-    "v": "Angular bandwidths, % of filter",
-}
-
-
-@dataclass(frozen=True, eq=False)
-class CodeAnswer:
-    """What the dock shows.
-
-    Parameters
-    ----------
-    column_id
-        The column.
-    code
-        What it synthesizes from.
-    measured
-        What was measured on the exemplar.
-    key
-        Hash of the code that was given, "" when the exemplar's is used.
-    name
-        Name of the given code.
-    reached
-        (16,) rms of the result's channels in per cent of its mean; None while there is no result.
-    """
-
-    column_id: int
-    code: MsgCode
-    measured: MsgCode
-    key: str
-    name: str
-    reached: Any
-
-
-def encoded(image: FloatImage, measure: BandwidthMeasure, axes: BandwidthAxes = "uv") -> MsgCode:
-    """Return the code of an image, (H, W, C) float32."""
-    from texlab_core.methods.spectral.encoding import encode
-    from texlab_core.work.tasks import finish
-    from texlab_core.work.threads import use_workers
-
-    with use_workers(1):
-        code, _ = finish(encode(image, measure, axes))
-        return code
-
-
-def given_code(column: ColumnScene) -> DataInput | None:
-    """Return the code that a column was given, None when it measures the exemplar's."""
-    code = dict(column.inputs).get("code")
-    return code if isinstance(code, DataInput) else None
 
 
 class CodeDock(FramedDock):
@@ -300,7 +235,7 @@ class CodeDock(FramedDock):
         if group == "residual":
             # Gray levels and moduli have no common scale.
             places = np.concatenate([[found[0] / 255], 0.9 * found[1:] / max(float(found[1:].max()), 1e-9)])
-        texts = [[_short(each, group) for each in row] for row in found.reshape(shape).tolist()]
+        texts = [[short(each, group) for each in row] for row in found.reshape(shape).tolist()]
         # The rows of v are those of u, beside it.
         rows = {"residual": RESIDUAL_NAMES, "v": [""] * len(OCTAVE_NAMES)}.get(group, OCTAVE_NAMES)
         names = [""] if group == "residual" else ANGLE_NAMES
@@ -452,15 +387,3 @@ class CodeDock(FramedDock):
             write_code(code, path, exemplar)
 
         self.intention.emit(AskOnce("save-code", write, lambda _: self.intention.emit(Tell(f"Saved {path}."))))
-
-
-def _short(shown: float, group: Group) -> str:
-    """Return a number with as many digits as a cell has room for."""
-    if group in ("u", "v"):
-        return f"{shown:.0f}"
-    return f"{shown:.2f}" if shown < 10 else f"{shown:.1f}" if shown < 100 else f"{shown:.0f}"
-
-
-def edit_code(column_id: int, code: DataInput, *, final: bool) -> EditInputs:
-    """Return the intention that a column works from a code."""
-    return EditInputs(column_id, (("code", code),), "code", final)
