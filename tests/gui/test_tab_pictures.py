@@ -12,19 +12,26 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, feed, noise, scene_of, shown
 from PIL import Image
-from PySide6.QtCore import QPoint, Qt
-from PySide6.QtGui import QColor, QDrag, QGuiApplication, QImage
+from PySide6.QtCore import QByteArray, QPoint, QSize, Qt
+from PySide6.QtGui import QColor, QDrag, QGuiApplication, QImage, QPainter
+from PySide6.QtSvg import QSvgRenderer
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from tests.gui.conftest import wait_idle
+from texlab.docks.bands.histograms import HistogramsDock
 from texlab.docks.bands.pyramid import PyramidDock
+from texlab.docks.spectral.spectrum import SpectrumDock
 from texlab.state.intentions import TakePicture
-from texlab.style import tab_picture
-from texlab.style.tab_picture import TAB_KEY, encode_picture
+from texlab.style.tab_picture import TAB_KEY
+from texlab.style.theme import LIGHT
+from texlab.style.vector_picture import recorded
+from texlab.widgets.plots import Plot
 from texlab.window import tab_pictures
 from texlab.window.tab_picture_dialog import SizeDialog
-from texlab.window.tab_pictures import as_picture, grab
+from texlab.window.tab_pictures import as_picture, encoded, grab
 from texlab_core.documents.reading import KEY
+
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 def test_pixels_come_out_as_they_are():
@@ -45,25 +52,99 @@ def test_letters_are_drawn_at_the_size_wanted(qtbot):
     assert not np.array_equal(large[::2, ::2], large[1::2, 1::2])
 
 
-@pytest.mark.parametrize("suffix", [".png", ".svg"])
-def test_what_is_encoded_is_read_again(suffix):
-    picture = np.random.default_rng(1).integers(0, 256, (5, 7, 3), np.uint8)
+def test_a_png_has_its_texts():
+    image = QImage(7, 5, QImage.Format.Format_RGB32)
+    image.fill(QColor(10, 120, 200))
     texts = {TAB_KEY: '{"tab":"a <b> & c"}'}
-    data = encode_picture(suffix, picture, texts)
-    if suffix == ".svg":
-        root = ET.fromstring(data)
-        assert (root.get("width"), root.get("height")) == ("7", "5")
-        space = {"s": "http://www.w3.org/2000/svg"}
-        assert json.loads(root.find("s:metadata", space).text) == texts
-        data = base64.b64decode(root.find("s:image", space).get("href").removeprefix("data:image/png;base64,"))
-    with Image.open(io.BytesIO(data)) as found:
-        assert np.array_equal(np.asarray(found), picture)
+    with Image.open(io.BytesIO(encoded(image, texts))) as found:
+        assert found.size == (7, 5)
+        assert found.getpixel((3, 3)) == (10, 120, 200)
         assert found.text == texts
 
 
-def test_other_suffixes_are_refused():
-    with pytest.raises(ValueError, match=r"\.png or \.svg, not as \.gif"):
-        encode_picture(".gif", np.zeros((2, 2, 3), np.uint8), {})
+def drawn(data, size):
+    """An SVG as another program would show it."""
+    shown = QImage(size, QImage.Format.Format_RGB32)
+    painter = QPainter(shown)
+    QSvgRenderer(QByteArray(data)).render(painter)
+    painter.end()
+    return as_picture(shown)
+
+
+def coarse(picture):
+    """(H // 4, W // 4, 3) means."""
+    height, width = picture.shape[0] // 4, picture.shape[1] // 4
+    return picture[: 4 * height, : 4 * width].reshape(height, 4, width, 4, 3).mean((1, 3))
+
+
+def svg_of(dock, texts=None, width=1800):
+    """The parts of a tab's SVG: the root, and all elements by their names."""
+    # A table lays its columns out on the next turn of the event loop.
+    QGuiApplication.processEvents()
+    data = encoded(recorded(dock.body, dock.title, width), texts or {})
+    root = ET.fromstring(data)
+    parts = {}
+    for each in root.iter():
+        parts.setdefault(each.tag.removeprefix(SVG), []).append(each)
+    return data, root, parts
+
+
+def pixels_inside(parts):
+    """Width and height of the pictures that an SVG has inside, as they are encoded."""
+    found = []
+    for each in parts.get("image", []):
+        inside = each.get("{http://www.w3.org/1999/xlink}href").removeprefix("data:image/png;base64,")
+        with Image.open(io.BytesIO(base64.b64decode(inside))) as picture:
+            found.append(picture.size)
+    return found
+
+
+def test_an_svg_of_plots_and_tables_is_letters_and_lines_alone(qtbot):
+    dock = shown(qtbot, HistogramsDock())
+    feed(dock, scene_of(column_of(noise()), exemplar=noise(seed=2)))
+    texts = {TAB_KEY: '{"tab":"a <b> & c"}'}
+    data, root, parts = svg_of(dock, texts)
+    width, height = dock.body.width(), dock.body.height()
+    assert root.get("viewBox") == f"0 0 {width} {height}"
+    assert (root.get("width"), root.get("height")) == ("1800", str(round(1800 * height / width)))
+    assert json.loads(parts["metadata"][0].text) == texts
+    assert parts["title"][0].text == dock.title
+    said = {(each.text or "").strip() for each in parts["text"]}
+    # The axes, the heads of the table and its numbers are words that can be searched for.
+    assert {"luma", "exemplar", "result", "skewness"} <= said
+    assert dock.table.item(0, 0).text() in said
+    assert len(parts["path"]) > 10
+    assert "image" not in parts
+    # It looks as the tab does, but for the edges of letters.
+    one, other = (coarse(each) for each in (drawn(data, QSize(width, height)), as_picture(grab(dock.body, width))))
+    assert np.abs(one - other).mean() < 2
+    assert np.abs(one - coarse(np.full((height, width, 3), 255))).mean() > 10
+
+
+def test_pictures_in_an_svg_keep_the_pixels_that_they_have(qtbot):
+    dock = shown(qtbot, SpectrumDock())
+    feed(dock, scene_of(column_of(noise()), exemplar=noise(seed=2)))
+    _, _, parts = svg_of(dock)
+    sizes = pixels_inside(parts)
+    # The two spectra, of 64 x 48 frequencies; the colour bar has one pixel across.
+    assert sizes.count((64, 48)) == 2
+    assert all(size == (64, 48) or size[0] == 1 for size in sizes)
+    assert any("cycles per pixel" in (each.text or "") for each in parts["text"])
+
+
+def test_points_are_circles_at_any_size(qtbot):
+    plot = Plot("plot", "Points")
+    qtbot.addWidget(plot)
+    plot.resize(300, 200)
+    plot.set_theme(LIGHT)
+    plot.show()
+    plot.points([1.0, 2.0, 3.0], [1.0, 3.0, 2.0], "result")
+    plot.fit()
+    before = as_picture(grab(plot, 300))
+    root = ET.fromstring(recorded(plot, "Points", 300).svg({}))
+    assert not root.findall(f".//{SVG}image")
+    # What the screen shows is as it was.
+    assert np.array_equal(as_picture(grab(plot, 300)), before)
 
 
 def test_the_handle_copies_on_a_click_and_drags(qtbot):
@@ -84,13 +165,13 @@ def test_the_handle_copies_on_a_click_and_drags(qtbot):
 @pytest.fixture
 def encoders(monkeypatch):
     """Threads in which pictures were encoded."""
-    found, usual = [], tab_picture.encode_picture
+    found, usual = [], tab_pictures.encoded
 
     def noted(*args):
         found.append(threading.current_thread())
         return usual(*args)
 
-    monkeypatch.setattr(tab_pictures, "encode_picture", noted)
+    monkeypatch.setattr(tab_pictures, "encoded", noted)
     return found
 
 
@@ -114,6 +195,10 @@ def test_every_tab_is_copied_saved_and_dragged(explorer, qtbot, tmp_path, monkey
         assert target.exists()
     with Image.open(tmp_path / "tab.png") as found:
         assert found.size[0] == 900
+    root = ET.parse(tmp_path / "tab.svg").getroot()
+    assert root.get("width") == "900"
+    assert json.loads(json.loads(root.find(f"{SVG}metadata").text)[KEY])["method"] == "heeger-bergen"
+    assert root.findall(f".//{SVG}text")
     # Dropped on the window, it gives the recipe back.
     from texlab_core.documents.record import read_recipe
 

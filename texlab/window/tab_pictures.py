@@ -13,10 +13,13 @@ from PySide6.QtGui import QDrag, QGuiApplication, QImage, QPainter
 from PySide6.QtWidgets import QAbstractSpinBox, QCheckBox, QComboBox, QDialog, QFileDialog, QWidget
 
 from texlab.docks.frame import FramedDock
-from texlab.style.tab_picture import SUFFIXES, encode_picture, picture_texts
+from texlab.style.tab_picture import SUFFIXES, picture_texts
+from texlab.style.vector_picture import Recording, painted_anew, recorded
 from texlab.window.tab_picture_dialog import LARGEST, SizeDialog
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
     from texlab.storage.settings import Settings
@@ -81,7 +84,7 @@ class TabPictures:
         if dialog.exec() != QDialog.DialogCode.Accepted:
             return
         folder = Path(self._settings.text("save-folder"))
-        kinds = "PNG (*.png);;SVG with the picture inside (*.svg)"
+        kinds = "PNG (*.png);;SVG, with letters and lines that stay sharp (*.svg)"
         path, kind = QFileDialog.getSaveFileName(
             self._window, f"Save the picture of {dock.title}", str(folder / f"{dock.name}.png"), kinds
         )
@@ -132,7 +135,8 @@ class TabPictures:
         part = self._part(dock)
         if part is None:
             return
-        image = grab(part, part.width() * SHARPER if width is None else width)
+        width = part.width() * SHARPER if width is None else width
+        taken = recorded(part, dock.title, width) if suffix == ".svg" else grab(part, width)
         scene = self._controller.scene()
         selected = scene.selected
         result = None if selected is None else selected.result
@@ -145,7 +149,7 @@ class TabPictures:
         number = self._newest
 
         def work(task: Task) -> bytes:
-            data = encode_picture(suffix, as_picture(image), picture_texts(made, result))
+            data = encoded(taken, picture_texts(made, result))
             if target is not None:
                 from texlab_core.files.whole import write_whole
 
@@ -168,9 +172,17 @@ def grab(widget: QWidget, width: int) -> QImage:
     image.fill(widget.palette().window().color())
     painter = QPainter(image)
     painter.scale(factor, factor)
-    widget.render(painter, QPoint(0, 0))
+    with painted_anew(widget, factor):
+        widget.render(painter, QPoint(0, 0))
     painter.end()
     return image
+
+
+def encoded(taken: QImage | Recording, texts: Mapping[str, str]) -> bytes:
+    """Return the bytes of a PNG of an image, of an SVG of a recording, with texts inside."""
+    from texlab_core.images.formats.writing import encode_png
+
+    return taken.svg(texts) if isinstance(taken, Recording) else encode_png(as_picture(taken), texts)
 
 
 def as_picture(image: QImage) -> Picture:
