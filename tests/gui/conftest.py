@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+import shiboken6
 from mouse import drag, handle_point, move  # noqa: F401
 from PIL import Image
 from pytestqt.qtbot import QtBot
@@ -73,7 +75,8 @@ def hb(**changes: Any) -> tuple[str, Any]:
 @pytest.fixture
 def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
     """Return a function that opens a window and waits until its columns have finished."""
-    opened: list[Explorer] = []
+    # A test may close a window and look for what stays of it.
+    opened: list[weakref.ref[Explorer]] = []
 
     def make(
         source: str | None, columns: list[tuple[str, Any]] | None = None, *, wait: bool = True, size: int = 48
@@ -87,7 +90,7 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
         # Most tests look at panels; what a first start shows is tested where the stage is.
         settings.values.setdefault("panels", True)
         explorer = texlab_app.complete(window, settings, themes)
-        opened.append(explorer)
+        opened.append(weakref.ref(explorer))
         if columns is not None:
             explorer.saved = explorer.saved or {"seed": 5, "size": [size, size]}
         explorer.start(source, columns=columns)
@@ -96,10 +99,11 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
         return explorer
 
     yield make
-    for explorer in opened:
-        window = explorer.window
-        window.close()
-        window.deleteLater()
+    for explorer in filter(None, (each() for each in opened)):
+        if shiboken6.isValid(explorer):
+            window = explorer.window
+            window.close()
+            window.deleteLater()
 
 
 @pytest.fixture

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import gc
+import importlib
+import pkgutil
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint
 from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication, QMainWindow, QMenu
 
+import texlab
 from tests.gui.conftest import ids, wait_idle
 from texlab.docks.recent import Recent, Same
 from texlab.runs import kept_points
@@ -20,13 +25,13 @@ from texlab.state.scene import ColumnScene
 from texlab.state.session import Sample, Session
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
+from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import pytest
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
 
     from texlab.app.explorer import Explorer
 
@@ -46,12 +51,14 @@ def close_all() -> None:
     settle()
 
 
-def objects() -> int:
+def objects() -> Counter[str]:
+    """Count the objects of Qt by their class."""
     gc.collect()
     roots: list[Any] = [QCoreApplication.instance(), *QApplication.topLevelWidgets()]
-    return len(
-        {shiboken6.getCppPointer(each)[0] for root in roots for each in (root, *root.findChildren(QObject))}
-    )
+    found = {
+        shiboken6.getCppPointer(each)[0]: each for root in roots for each in (root, *root.findChildren(QObject))
+    }
+    return Counter(each.metaObject().className() for each in found.values())
 
 
 def command(name: str) -> Callable[[Explorer], None]:
@@ -96,45 +103,64 @@ COMING_AND_GOING = {
 }
 
 
-def test_what_comes_and_goes_leaves_no_object(qtbot: Any, explorer: Explorer) -> None:
-    left = {}
-    for name, act in COMING_AND_GOING.items():
-        counts = []
-        # The first times may make what is kept for good.
-        for _ in range(2):
-            for _ in range(2):
-                act(explorer)
-                close_all()
-            counts.append(objects())
-        if counts[1] > counts[0]:
-            left[name] = counts
-    assert not left
-    wait_idle(qtbot, explorer)
+def column_of_its_own(explorer: Explorer) -> None:
+    explorer.handlers._add_column("msg")
+    settle()
+    explorer.window.actions_by_name["remove"].trigger()
 
 
-def test_a_column_that_has_gone_leaves_no_object(qtbot: Any, explorer: Explorer) -> None:
+COMING_AND_GOING["a column"] = column_of_its_own
+
+
+def growth(qtbot: Any, explorer: Explorer, names: Iterable[str]) -> Counter[str]:
+    """Return which objects are more after these came and went once more."""
     counts = []
-    for _ in range(3):
-        explorer.handlers._add_column("msg")
-        wait_idle(qtbot, explorer)
-        explorer.window.actions_by_name["remove"].trigger()
+    for _ in range(2):
+        for name in names:
+            COMING_AND_GOING[name](explorer)
+            close_all()
         wait_idle(qtbot, explorer)
         settle()
         counts.append(objects())
-    assert counts[2] <= counts[1]
+    return counts[1] - counts[0]
 
 
-def test_the_crop_box_brings_no_menu(explorer: Explorer) -> None:
-    def menus() -> int:
-        settle()
-        return sum(isinstance(each, QMenu) and each.title() == "Handle" for each in QApplication.allWidgets())
+@pytest.fixture
+def imported() -> None:
+    """What modules hold is there before anything is counted."""
+    for each in pkgutil.walk_packages(texlab.__path__, "texlab."):
+        if not each.name.startswith(("texlab.__main__", "texlab._pyinstaller")):
+            importlib.import_module(each.name)
 
+
+def ours() -> dict[int, Any]:
+    """Return every object of a class of the window's program by its id."""
+    return {id(each): each for each in gc.get_objects() if str(type(each).__module__).startswith("texlab.")}
+
+
+@pytest.mark.usefixtures("imported")
+def test_what_comes_and_goes_leaves_no_object_and_a_closed_window_none(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+) -> None:
+    before = ours()
+    explorer = open_window(str(texture), [("pixels", methods()["pixels"].params())])
     box = explorer.workspace.exemplar._box
-    assert len(box.getHandles()) == 8
-    assert menus() == 0
-    twice("crop")(explorer)
-    assert menus() == 0
+    if growth(qtbot, explorer, COMING_AND_GOING):
+        # The first times may make what is kept for good.
+        left = {name: grown for name in COMING_AND_GOING if (grown := growth(qtbot, explorer, [name]))}
+        assert not left
+    assert not [each for each in QApplication.allWidgets() if isinstance(each, QMenu) and each.title() == "Handle"]
     assert explorer.workspace.exemplar._box is box
+    assert len(box.getHandles()) == 8
+
+    window = explorer.window
+    del explorer, box
+    window.close()
+    window.deleteLater()
+    del window
+    settle()
+    gc.collect()
+    assert Counter(type(each).__qualname__ for key, each in ours().items() if key not in before) == Counter()
 
 
 # What is kept is bounded.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import faulthandler
+import gc
 import os
 import random
 import signal
@@ -14,6 +15,7 @@ import threading
 import time
 import traceback
 import tracemalloc
+import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,10 +131,14 @@ class Soak:
             self._count(explorer)
         window.close()
         window.deleteLater()
+        gone = weakref.ref(explorer)
         del driver, explorer, window
         for _ in range(3):
             QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
             QCoreApplication.processEvents()
+        gc.collect()
+        if gone() is not None:
+            self.problems.append(f"The window that was closed after {self.done} events is still in memory.")
 
     def _rest(self, explorer: Explorer) -> None:
         """Close what is open over the window, and wait until it has come to rest."""

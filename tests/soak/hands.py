@@ -30,8 +30,8 @@ KEYS = [
     *("Tab", "Return", "Space", "Escape", "Left", "Right", "Up", "Down", "PageUp", "PageDown", "Home", "End"),
     *("Delete", "Backspace", "Plus", "Minus", "Period", *"0123579ABDFGLTWXZ", "F1", "F4", "F5"),
 ]
-# These end the window or write where a person would have been asked.
-FORBIDDEN = {"action-quit"}
+# These end the window, or start another program that nobody would end.
+FORBIDDEN = {"action-quit", "action-another-window"}
 # A person does not do these every second, and each costs more than a hundred others.
 RARE = {"action-run-all", "action-batch", "action-failures", "action-four", "action-spectra"}
 

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from texlab.runs.worker import Task
     from texlab.storage.reading import Source
     from texlab.storage.settings import Settings
-    from texlab.style.theme import ThemeSource
+    from texlab.style.theme import Theme, ThemeSource
     from texlab.window.main_window import MainWindow
 
 log = logging.getLogger(__name__)
@@ -233,6 +233,9 @@ class Explorer(QObject):
         self.window.docks["gallery"].show()
         self.thumbnails.show_several(sources)
 
+    def _show_theme(self, theme: Theme) -> None:
+        self.presenter.show_theme(theme)
+
     def _show_whole(self, whole: bool) -> None:
         sample = self.session.state.sample
         if sample is not None:
@@ -260,7 +263,8 @@ class Explorer(QObject):
             window.actions_by_name[f"{how}-tab"].triggered.connect(partial(self._take_tab, how))
         presenter.recent_chosen.connect(self.opener.open)
         self.crash.crashed.connect(lambda text: window.message_bar.tell(text, "problem"))
-        self.themes.changed.connect(lambda _: presenter.show_theme(self.themes.theme))
+        # The themes outlive the window; a function that knows the window would keep it.
+        self.themes.changed.connect(self._show_theme)
         self.workspace.column_made.connect(self._connect_column)
         self.workspace.column_moved.connect(session.move_column)
         for dock in self.docks:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import pyqtgraph as pg
+import shiboken6
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent
 from PySide6.QtWidgets import QMenu, QSizePolicy, QToolButton
@@ -239,8 +240,8 @@ class ExemplarView(Cell):
         ):
             box.addScaleHandle(corner, opposite)
         for handle in box.getHandles():
-            # Nobody sees these menus, and without a parent nobody would delete them.
-            handle.menu.deleteLater()
+            # Nobody sees these menus; without a parent nobody would delete them, and later the window owns them.
+            shiboken6.delete(handle.menu)
         box.sigRegionChanged.connect(lambda: self._dragged(final=False))
         box.sigRegionChangeFinished.connect(lambda: self._dragged(final=True))
         box.hide()
