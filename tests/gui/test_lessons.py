@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 from dock_scenes import feed, scene_of
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtWidgets import QWidget
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.docks import dock_classes
-from texlab.docks.lessons import LessonsDock
+from texlab.docks.lessons.dock import LessonsDock
+from texlab.runs import column_run
+from texlab.runs.column_run import MeasureRun
 from texlab.state.intentions import GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
 from texlab.state.lesson_scene import LessonScene
 from texlab.storage.paths import config_dir
@@ -155,25 +158,64 @@ def test_a_ready_step_shows_what_was_kept_without_running_anything(
 ) -> None:
     give(qtbot, explorer, small)
     wait_ready(qtbot, explorer)
+    # The numbers under the pictures come last.
+    qtbot.waitUntil(lambda: not explorer.teacher.runner.busy)
+    started: list[str] = []
 
-    def never(*_: Any, **__: Any) -> None:
-        raise AssertionError("a ready step ran a method")
+    def noted(what: str, usual: Any) -> Any:
+        return lambda *args, **more: (started.append(what), usual(*args, **more))[1]
 
-    monkeypatch.setattr("texlab.runs.column_run.run", never)
+    monkeypatch.setattr("texlab.runs.column_run.run", noted("a method", column_run.run))
+    monkeypatch.setattr(MeasureRun, "__call__", noted("measures", MeasureRun.__call__))
     for place in (1, 0, 1):
         explorer.carrier.carry_out(GoToStep(place))
         wait_idle(qtbot, explorer)
-        assert [each.status for each in explorer.controller.scene().columns] == ["finished"] * len(ids(explorer))
+        columns = explorer.controller.scene().columns
+        assert [each.status for each in columns] == ["finished"] * len(ids(explorer))
+        assert all(each.measures and each.findings is not None for each in columns)
+    assert started == []
     explorer.carrier.carry_out(GoToStep(0))
     wait_idle(qtbot, explorer)
     # The slider too: its values were made ahead.
     dock = explorer.window.docks["lessons"].widget()
     explorer.window.raise_dock("lessons")
     wait_idle(qtbot, explorer)
-    qtbot.keyClick(dock.slider, Qt.Key.Key_Right)
+    qtbot.keyClick(dock.words.slider, Qt.Key.Key_Right)
     wait_idle(qtbot, explorer)
     assert explorer.session.state.columns[0].params.to_json()["iterations"] == 2
     assert explorer.controller.scene().columns[0].status == "finished"
+    assert started == []
+
+
+def test_a_step_with_the_same_methods_keeps_every_widget(
+    qtbot: Any, explorer: Explorer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    methods = ["pixels", "tiling"]
+    steps = [
+        {
+            "sentence": f"Step {seed}.",
+            "exemplar": f"gallery:stochastic-{name}",
+            "size": {"width": 32, "height": 32},
+            "seed": seed,
+            "columns": [{"method": each} for each in methods],
+            "chosen": 1,
+            "tab": {"name": "histograms"},
+        }
+        for seed, name in enumerate(("lava", "sea", "lava"), 1)
+    ]
+    (folder / "stays.json").write_text(json.dumps({**SMALL, "steps": steps}))
+    give(qtbot, explorer, "stays")
+    wait_ready(qtbot, explorer)
+    widgets = set(explorer.window.findChildren(QWidget))
+    made: list[type] = []
+    for place in (1, 2, 1, 0):
+        explorer.carrier.carry_out(GoToStep(place))
+        wait_idle(qtbot, explorer)
+        assert explorer.session.state.seed == place + 1
+        made += [type(each) for each in set(explorer.window.findChildren(QWidget)) - widgets]
+    assert made == []
 
 
 def test_the_bundled_lesson_is_given_with_page_down_alone(
@@ -243,12 +285,15 @@ def test_what_the_window_shows_becomes_a_lesson_of_ones_own(qtbot: Any, explorer
     assert np.array_equal(result_image(explorer, ids(explorer)[0]), image)
     session.set_seed(12)
     wait_idle(qtbot, explorer)
-    explorer.carrier.carry_out(SaveStep("Another seed."))
+    # From the tab with the button, what was looked at before it is kept.
+    window.raise_dock("lessons")
+    wait_idle(qtbot, explorer)
+    qtbot.mouseClick(window.docks["lessons"].widget().save_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: explorer.teacher.scene.lesson is not None and explorer.teacher.scene.place == 1)
     wait_ready(qtbot, explorer)
     lesson = read_lesson(config_dir() / "lessons" / "my-lesson.json")
     assert [each.seed for each in lesson.steps] == [5, 12]
-    assert lesson.steps[1].sentence == "Another seed."
+    assert [each.tab.name for each in lesson.steps] == ["histograms"] * 2
     explorer.carrier.carry_out(LeaveLesson())
     wait_idle(qtbot, explorer)
     assert session.state is wanted
@@ -272,9 +317,16 @@ def test_without_a_lesson_the_dock_says_what_to_do_and_offers_nothing_of_a_step(
     qtbot.addWidget(dock)
     dock.show()
     feed(dock, scene_of())
-    assert dock.note.isVisible()
-    assert dock.note.text() == "Click a lesson to give it."
-    for each in (dock.slider, dock.reveal, dock.pane, dock.question_label, dock.answer_label, dock.try_label):
+    assert dock.words.note.isVisible()
+    assert dock.words.note.text() == "Click a lesson to give it, or choose it and press Enter."
+    for each in (
+        dock.words.slider,
+        dock.words.reveal,
+        dock.pane,
+        dock.words.question,
+        dock.words.answer,
+        dock.words.try_this,
+    ):
         assert not each.isVisible()
 
 
@@ -292,11 +344,11 @@ def test_the_dock_says_what_belongs_to_a_step_and_hides_the_answer(qtbot: Any, s
     scene = scene_of()
     object.__setattr__(scene, "lesson", given)
     feed(dock, scene)
-    assert dock.note.text() == "The first."
-    assert not dock.answer_label.isVisible()
-    dock.reveal.click()
-    assert dock.answer_label.isVisible()
-    assert dock.answer_label.text() == "So."
+    assert dock.words.note.text() == "The first."
+    assert not dock.words.answer.isVisible()
+    dock.words.reveal.click()
+    assert dock.words.answer.isVisible()
+    assert dock.words.answer.text() == "So."
     assert dock.jump.count() == 3
     assert dock.list.findItems("bad.json", Qt.MatchFlag.MatchContains)
     dock.jump.activated.emit(2)

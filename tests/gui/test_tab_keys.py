@@ -24,6 +24,7 @@ import texlab
 from tests.gui.conftest import ids, wait_idle
 from texlab.docks.fill.mask_canvas import MaskCanvas
 from texlab.docks.inputs.crop_pane import CropPane
+from texlab.docks.lessons.editor import LessonEditor
 from texlab.docks.solids.panes import ObjectPane, SlicePane
 from texlab.state.intentions import RunSweep, StopSweep
 from texlab.widgets.own_keys import CopyKey
@@ -111,7 +112,7 @@ def test_every_tab_keeps_its_own_keys_and_no_others(qtbot: Any, everything: Expl
     # Only of a state that another test brings about.
     waiting = {"Pyramid": {"Esc", "0", "1", "2", "4"}, "Sweeps": {"Esc", "N", "K", *ARROWS}, "Dependence": {"Esc"}}
     # They have no picture here; the next test looks at them alone.
-    waiting |= {name: of_tabs[name] for name in ("Solid", "Inputs", "Fill")}
+    waiting |= {name: of_tabs[name] for name in ("Solid", "Inputs", "Fill", "Lessons")}
     for title, dock in titles.items():
         # What a tab without keys of its own shows is not waited for.
         in_front(qtbot, everything, dock.name, wait=title in of_tabs)
@@ -132,8 +133,14 @@ def test_every_tab_keeps_its_own_keys_and_no_others(qtbot: Any, everything: Expl
         assert seen >= own - waiting.get(title, set()), f"{title}: {own - seen}"
 
 
-def test_solids_inputs_and_masks_keep_their_keys(qtbot: Any) -> None:
+def test_solids_inputs_masks_and_lessons_keep_their_keys(qtbot: Any) -> None:
     of_tabs = documented()[1]
+    editor = LessonEditor()
+    for each in (editor, editor.words):
+        qtbot.addWidget(each)
+    steps = editor.steps
+    assert {key for key in of_tabs["Lessons"] if override(steps, key)} == of_tabs["Lessons"]
+    assert not any(override(steps, key) for key in ("PgDown", "Ctrl+L", "Ctrl+PgDown", "1"))
     canvas = MaskCanvas("canvas", "Mask")
     qtbot.addWidget(canvas)
     assert not override(canvas, "Left")

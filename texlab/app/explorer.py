@@ -27,6 +27,7 @@ from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.sessions import claim, told_of_others
 from texlab.storage.settings import OLD_SESSION, columns_from_json, has_kept_inputs, seed_and_size
+from texlab.widgets.settling import settle_all
 from texlab.window.carrier import Carrier
 from texlab.window.exchange import Exchange
 from texlab.window.gallery_thumbnails import Thumbnails
@@ -93,7 +94,7 @@ class Explorer(QObject):
         self.hosts = [DockHost(dock, dock_slots, self) for dock in self.docks]
         self.exchange = Exchange(window, settings, self.controller, self.opener)
         self.opener.locate_wanted = self.exchange.ask_locate
-        self.desk = HelpDesk(window, self.session)
+        self.desk = HelpDesk(window, self.session, config_dir() / "lessons")
         self.desk.read_wanted = lambda read, done: self.controller.once("palette", lambda task: read(), done)
         self.tabs = TabPictures(window, settings, self.controller)
         self.tuning = Tuning(window, self.workspace)
@@ -132,6 +133,7 @@ class Explorer(QObject):
         window.set_workspace(self.workspace)
         self.stage = StageSettings(window, self.workspace, settings)
         window.add_docks(self.docks)
+        self.teacher.desk.watch_tabs()
         self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted)
         window.actions_by_name["own-layouts"].triggered.connect(lambda _: self.own_layouts.ask())
         self.teach_mode = TeachMode(window, self.workspace, self.session)
@@ -201,6 +203,8 @@ class Explorer(QObject):
         if self._closed:
             return
         self._closed = True
+        # What is being typed is taken while it can still be written.
+        settle_all(self.window)
         self._memory.stop()
         self.handlers.close()
         self.teach_mode.close()
@@ -288,7 +292,7 @@ class Explorer(QObject):
         parameters = window.parameters
         parameters.intention.connect(self.carrier.carry_out)
         parameters.help_wanted.connect(self.desk.show_help)
-        self.desk.lesson_wanted.connect(lambda name: self.teacher.carry_out(OpenLesson(name)))
+        self.desk.lesson_wanted.connect(lambda name, own: self.teacher.carry_out(OpenLesson(name, own)))
         parameters.dock_wanted.connect(window.raise_dock)
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)

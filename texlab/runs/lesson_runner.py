@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from texlab.runs.column_run import ColumnRun, Loading, job_of, key_of
+from texlab.runs.column_run import ColumnRun, Loading, MeasureRun, job_of, key_of
 from texlab.runs.slots import Rank
 from texlab.runs.worker import Worker
 from texlab.state.changes import sample_as_used
 from texlab.state.lessons import StepPictures, state_of
 from texlab.state.session import State
+from texlab_core.errors import InputError
 from texlab_core.warming import Need
 
 if TYPE_CHECKING:
@@ -23,6 +25,9 @@ if TYPE_CHECKING:
     from texlab.runs.column_runner import Shared
     from texlab_core.documents.lessons import Lesson
     from texlab_core.lessons.drawing import Drawn
+
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +46,16 @@ class _Made:
     drawn: Drawn | None
 
 
+@dataclass(frozen=True)
+class _Numbers:
+    place: int
+
+
 class LessonRunner(QObject):
     """Opens lessons and computes their steps ahead, with what no column needs.
+
+    When all are ready, the numbers and findings about their results are found out too, so that nothing is left to
+    compute when a step is shown.
 
     ``opened(opened)`` when the pictures are there; ``advanced()`` whenever another step is ready;
     ``failed(sentence)``.
@@ -60,6 +73,8 @@ class LessonRunner(QObject):
         self._making = False
         self._keys: dict[int, tuple[Hashable, ...]] = {}
         self._drawn: dict[int, Drawn | None] = {}
+        # Steps whose numbers and findings are known.
+        self._measured: set[int] = set()
         self._worker = Worker("lesson", shared.slots, self)
         self._worker.finished.connect(self._finished)
         self._worker.failed.connect(self._failed)
@@ -84,12 +99,36 @@ class LessonRunner(QObject):
         if not self._making:
             self._next()
 
+    def rearrange(self, lesson: Lesson, order: tuple[int, ...]) -> Opened | None:
+        """Go on with the steps in another order and with other words; what is ready stays so.
+
+        Parameters
+        ----------
+        lesson
+            As it is to be.
+        order
+            For each of its steps the index of a present one that shows the same.
+        """
+        before = self._open
+        if before is None:
+            return None
+        if order != tuple(range(len(before.pictures))):
+            # What is being made ready is for a place that another step has now.
+            self._worker.cancel()
+            self._making = False
+        self._open = Opened(before.name, lesson, tuple(before.pictures[place] for place in order))
+        self._keys = {new: self._keys[old] for new, old in enumerate(order) if old in self._keys}
+        self._drawn = {new: self._drawn[old] for new, old in enumerate(order) if old in self._drawn}
+        self._measured = {new for new, old in enumerate(order) if old in self._measured}
+        return self._open
+
     def leave_lesson(self) -> None:
         """Stop making steps ready, and forget the lesson; finished results stay kept."""
         self._worker.cancel()
         self._open, self._left, self._making = None, [], False
         self._keys.clear()
         self._drawn.clear()
+        self._measured.clear()
 
     def ready(self, place: int) -> bool:
         """Whether a step shows at once: what it needs has been made, and is still kept."""
@@ -114,20 +153,32 @@ class LessonRunner(QObject):
         return self._worker.ended
 
     def _next(self) -> None:
-        if self._open is not None and self._left:
-            place = self._left.pop(0)
-            self._making = True
-            self._worker.submit(partial(_make, self._shared, self._open, place), rank=Rank.AHEAD)
+        """Make the next step ready; when all are, find out the numbers that stand under their pictures."""
+        if self._open is None:
+            return
+        work: Callable[[TaskLike], _Made | _Numbers]
+        if self._left:
+            work = partial(_make, self._shared, self._open, self._left.pop(0))
+        else:
+            place = next((each for each in self._keys if each not in self._measured), None)
+            if place is None:
+                return
+            work = partial(_measure, self._shared, self._open, place, self._keys[place])
+        self._making = True
+        self._worker.submit(work, rank=Rank.AHEAD)
 
-    def _finished(self, value: Opened | _Made) -> None:
+    def _finished(self, value: Opened | _Made | _Numbers) -> None:
         if isinstance(value, Opened):
             self._open = value
             self.opened.emit(value)
             return
         self._making = False
-        self._keys[value.place] = value.keys
-        self._drawn[value.place] = value.drawn
-        self.advanced.emit()
+        if isinstance(value, _Made):
+            self._keys[value.place] = value.keys
+            self._drawn[value.place] = value.drawn
+            self.advanced.emit()
+        else:
+            self._measured.add(value.place)
         self._next()
 
     def _failed(self, sentence: str) -> None:
@@ -197,3 +248,19 @@ def _make(shared: Shared, opened: Opened, place: int, task: TaskLike) -> _Made:
             ends.append(end)
     results = tuple(end.result for end in ends[: len(step.columns)])
     return _Made(place, tuple(keys), drawn(opened.lesson, step, pictures.exemplar, results))
+
+
+def _measure(shared: Shared, opened: Opened, place: int, keys: tuple[Hashable, ...], task: TaskLike) -> _Numbers:
+    """Find out numbers and findings about what a step shows, and keep them with it (in the worker's thread)."""
+    exemplar = opened.pictures[place].exemplar
+    for key in keys:
+        end = shared.kept.get(key)
+        if exemplar is None or end is None or shared.kept.measured(key) is not None:
+            continue
+        try:
+            result = end.result
+            shared.kept.note(key, MeasureRun(result.image, exemplar, result, shared.prepared, draft=False)(task))
+        except InputError as bad:
+            # The column says so itself when it is shown.
+            log.warning("A step of %s could not be measured: %s", opened.lesson.title, bad)
+    return _Numbers(place)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Mark
-    from texlab_core.documents.lessons import LessonStep
+    from texlab_core.documents.lessons import Lesson
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
@@ -299,9 +299,10 @@ class OpenLesson:
 
 @dataclass(frozen=True)
 class GoToStep:
-    """Show another step of the lesson, by its index."""
+    """Show another step of the lesson, by its index; ``stay`` in the tab that is in front."""
 
     place: int
+    stay: bool = False
 
 
 @dataclass(frozen=True)
@@ -324,11 +325,23 @@ class NewLesson:
 
 
 @dataclass(frozen=True)
-class ChangeSteps:
-    """Give the user's own lesson these steps, and show one of them."""
+class ChangeLesson:
+    """Let the user's own lesson that is given be this one, and show one of its steps."""
 
-    steps: tuple[LessonStep, ...]
+    lesson: Lesson
     place: int
+
+
+@dataclass(frozen=True)
+class UndoLesson:
+    """Take the last change of the user's own lesson back, or make it again."""
+
+    redo: bool = False
+
+
+@dataclass(frozen=True)
+class CopyLesson:
+    """Make a copy of the lesson that is given, which is the user's own."""
 
 
 Intention = (
@@ -365,5 +378,7 @@ Intention = (
     | LeaveLesson
     | SaveStep
     | NewLesson
-    | ChangeSteps
+    | ChangeLesson
+    | UndoLesson
+    | CopyLesson
 )

@@ -36,6 +36,8 @@ class LessonScene:
         The drawing of the step that is shown.
     column_id
         The column of its slider.
+    can_undo, can_redo
+        There are changes of the lesson to take back, or to make again.
     """
 
     folder: Path | None = None
@@ -47,6 +49,8 @@ class LessonScene:
     ready: tuple[bool, ...] = ()
     drawn: Drawn | None = None
     column_id: int = 0
+    can_undo: bool = False
+    can_redo: bool = False
 
     @property
     def step(self) -> LessonStep | None:

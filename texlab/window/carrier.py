@@ -8,9 +8,10 @@ from texlab.state.changes import by_hand, sample_of, with_cell, with_cell_column
 from texlab.state.intentions import (
     AskOnce,
     CellAsColumn,
+    ChangeLesson,
     ChangeMethod,
-    ChangeSteps,
     ChooseColumn,
+    CopyLesson,
     EditField,
     EditInputs,
     EditParams,
@@ -40,6 +41,7 @@ from texlab.state.intentions import (
     TakePicture,
     TakeStage,
     Tell,
+    UndoLesson,
 )
 from texlab_core.engine.registry import find_method
 
@@ -158,7 +160,9 @@ class Carrier:
                 controller.run_tuning(column_id, plan)
             case StopTuning():
                 controller.stop_tuning()
-            case OpenLesson() | GoToStep() | LeaveLesson() | SaveStep() | NewLesson() | ChangeSteps():
+            case OpenLesson() | GoToStep() | LeaveLesson() | SaveStep() | NewLesson():
+                self._teach(intention)
+            case ChangeLesson() | UndoLesson() | CopyLesson():
                 self._teach(intention)
             case TakeCell():
                 self._take(intention)

@@ -15,12 +15,16 @@ from texlab_core.engine.params import describe
 from texlab_core.engine.run import versions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from texlab.state.session import Session
     from texlab.window.main_window import MainWindow
     from texlab_core.documents.lessons import Lesson
     from texlab_core.sheets.sweep_recipes import SweepRecipe
+
+    # Name, lesson, whether it is the user's own; then sweeps.
+    Found = tuple[Sequence[tuple[str, Lesson, bool]], Sequence[SweepRecipe]]
 
 _DIRECT = Qt.FindChildOption.FindDirectChildrenOnly
 
@@ -28,15 +32,23 @@ _DIRECT = Qt.FindChildOption.FindDirectChildrenOnly
 class HelpDesk(QObject):
     """Opens the help window (made when it is first wanted), the command palette and the box about the program.
 
-    ``lesson_wanted(name)`` when a page leads to a lesson.
+    Parameters
+    ----------
+    window, session
+        Whose commands, panels and parameters the palette finds.
+    lessons
+        The folder of the user's own lessons.
+
+    ``lesson_wanted(name, own)`` when a page or the palette leads to a lesson, or to one of the user's own.
     """
 
-    lesson_wanted = Signal(str)
+    lesson_wanted = Signal(str, bool)
 
-    def __init__(self, window: MainWindow, session: Session) -> None:
+    def __init__(self, window: MainWindow, session: Session, lessons: Path) -> None:
         super().__init__(window)
         self._window = window
         self._session = session
+        self._lessons = lessons
         self.help: HelpWindow | None = None
         self.read_wanted: Callable[[Callable[[], Any], Callable[[Any], None]], None] = lambda read, done: None
         self._palette: CommandPalette | None = None
@@ -46,7 +58,7 @@ class HelpDesk(QObject):
         if self.help is None:
             self.help = HelpWindow(self._window)
             self.help.knob_wanted.connect(self._show_knob)
-            self.help.lesson_wanted.connect(self.lesson_wanted)
+            self.help.lesson_wanted.connect(lambda name: self.lesson_wanted.emit(name, False))
         self.help.open_page(page)
 
     def show_about(self) -> None:
@@ -76,23 +88,29 @@ class HelpDesk(QObject):
     def _forget_palette(self) -> None:
         self._palette = None
 
-    @staticmethod
-    def _read() -> tuple[Mapping[str, Lesson], Sequence[SweepRecipe]]:
-        """Return the lessons and the ready-made sweeps that come with the program."""
-        from texlab_core.lessons.shelf import bundled
+    def _read(self) -> Found:
+        """Return the lessons there are, and the ready-made sweeps that come with the program."""
+        from texlab_core.lessons.shelf import bundled, own
         from texlab_core.sheets.sweep_recipes import bundled_sweeps
 
-        return bundled(), tuple(bundled_sweeps())
+        shelves = (bundled(), False), (own(self._lessons)[0], True)
+        lessons = [(name, each, mine) for shelf, mine in shelves for name, each in shelf.items()]
+        return lessons, tuple(bundled_sweeps())
 
-    def _found(self, found: tuple[Mapping[str, Lesson], Sequence[SweepRecipe]]) -> None:
+    def _found(self, found: Found) -> None:
         if self._palette is None:
             return
         lessons, sweeps = found
         self._palette.add(
             [
                 *(
-                    Entry("lesson", each.title, name, partial(self.lesson_wanted.emit, name))
-                    for name, each in lessons.items()
+                    Entry(
+                        "lesson",
+                        each.title,
+                        f"{name}, of your own" if mine else name,
+                        partial(self.lesson_wanted.emit, name, mine),
+                    )
+                    for name, each, mine in lessons
                 ),
                 *(
                     Entry("sweep", each.name.replace("-", " "), each.note, partial(self._show_sweep, each))

@@ -9,11 +9,25 @@ from typing import TYPE_CHECKING, Any, assert_never
 from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.lesson_runner import LessonRunner
-from texlab.state.intentions import ChangeSteps, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
+from texlab.state.intentions import (
+    ChangeLesson,
+    CopyLesson,
+    GoToStep,
+    LeaveLesson,
+    NewLesson,
+    OpenLesson,
+    SaveStep,
+    UndoLesson,
+)
+from texlab.state.lesson_edits import Version, Versions, shown_alike
 from texlab.state.lesson_scene import LessonScene
-from texlab.state.lessons import Draft, source_of, state_of, step_of
+from texlab.state.lessons import state_of
 from texlab.state.scene import Probe
 from texlab.style.pictures import Mark
+from texlab.widgets.settling import settle_all
+from texlab.window.lesson_desk import LessonDesk, read
+from texlab_core.documents.lesson_parts import LessonError
+from texlab_core.documents.lessons import MAX_STEPS
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,7 +43,7 @@ if TYPE_CHECKING:
     from texlab.window.presenter import Presenter
     from texlab_core.documents.lessons import Lesson, LessonStep
 
-Teaching = OpenLesson | GoToStep | LeaveLesson | SaveStep | NewLesson | ChangeSteps
+Teaching = OpenLesson | GoToStep | LeaveLesson | SaveStep | NewLesson | ChangeLesson | UndoLesson | CopyLesson
 
 
 class Teacher(QObject):
@@ -67,9 +81,13 @@ class Teacher(QObject):
         self._first_id = 1
         self._opened: Opened | None = None
         self._wanted = OpenLesson("")
+        # Counts how often another lesson was opened, or one was left.
+        self._asked = 0
         self._first_place = 0
         self._to_show: LessonStep | None = None
         self._scene = LessonScene(folder=folder)
+        self.desk = LessonDesk(window, controller, self._docks, folder)
+        self._versions = Versions()
         self.runner = LessonRunner(controller.shared, self)
         self.runner.opened.connect(self._begin)
         self.runner.advanced.connect(self._tell)
@@ -77,9 +95,9 @@ class Teacher(QObject):
         presenter.painted.connect(self._painted)
         actions = window.actions_by_name
         actions["lessons"].triggered.connect(lambda: window.raise_dock("lessons"))
-        actions["lesson-next"].triggered.connect(lambda: self._go(self._scene.place + 1))
-        actions["lesson-back"].triggered.connect(lambda: self._go(self._scene.place - 1))
-        actions["lesson-leave"].triggered.connect(self._leave)
+        actions["lesson-next"].triggered.connect(lambda: self._step(1))
+        actions["lesson-back"].triggered.connect(lambda: self._step(-1))
+        actions["lesson-leave"].triggered.connect(lambda: self.carry_out(LeaveLesson()))
         self._tell()
 
     @property
@@ -90,20 +108,27 @@ class Teacher(QObject):
     def carry_out(self, intention: Any) -> None:
         """Do what is intended; what cannot be done is said."""
         wanted: Teaching = intention
+        if not isinstance(wanted, ChangeLesson):
+            # Words that are still being typed belong to the step that is left.
+            settle_all(self._window)
         try:
             match wanted:
                 case OpenLesson():
                     self._open(wanted)
-                case GoToStep(place):
-                    self._go(place)
+                case GoToStep(place, stay):
+                    self._go(place, stay=stay)
                 case LeaveLesson():
                     self._leave()
                 case SaveStep(sentence):
                     self._save(sentence)
                 case NewLesson(title):
                     self._new(title)
-                case ChangeSteps(steps, place):
-                    self._change(steps, place)
+                case ChangeLesson(lesson, place):
+                    self._change(lesson, place)
+                case UndoLesson(redo):
+                    self._undo(redo=redo)
+                case CopyLesson():
+                    self._copy()
                 case _:
                     assert_never(wanted)
         except InputError as bad:
@@ -116,10 +141,12 @@ class Teacher(QObject):
     def close(self) -> None:
         """Stop the thread and wait for its end."""
         self.runner.close()
+        self.desk.close()
 
     # Giving a lesson.
 
     def _open(self, wanted: OpenLesson, place: int = 0) -> None:
+        self._asked += 1
         self._wanted, self._first_place = wanted, place
         self.runner.open(wanted.name, partial(read, wanted, self._scene.folder))
 
@@ -130,12 +157,17 @@ class Teacher(QObject):
             # Columns of the lesson are none of the user's.
             self._first_id = self._aside.state.next_id
         self._opened = opened
+        if (opened.name, self._wanted.own) != (self._scene.name, self._scene.own):
+            self._versions.clear()
         self._scene = dataclasses.replace(
             self._scene, name=opened.name, lesson=opened.lesson, own=self._wanted.own, place=0, drawn=None
         )
         self._go(min(self._first_place, len(opened.lesson.steps) - 1))
 
-    def _go(self, place: int) -> None:
+    def _step(self, by: int) -> None:
+        self.carry_out(GoToStep(self._scene.place + by))
+
+    def _go(self, place: int, *, stay: bool = False) -> None:
         opened = self._opened
         if opened is None or not 0 <= place < len(opened.lesson.steps):
             return
@@ -150,7 +182,8 @@ class Teacher(QObject):
             session.select(self._first_id + step.chosen)
         self._controller.ask_about(self._probe(step))
         self._to_show = step
-        self._show_tab(step)
+        if not stay:
+            self._show_tab(step)
         self.runner.prepare_from(place)
         self._tell()
 
@@ -186,7 +219,13 @@ class Teacher(QObject):
         """Tell everybody where the lesson is."""
         count = 0 if self._scene.lesson is None else len(self._scene.lesson.steps)
         ready = tuple(self.runner.ready(place) for place in range(count))
-        self._scene = dataclasses.replace(self._scene, ready=ready, drawn=self.runner.drawn(self._scene.place))
+        self._scene = dataclasses.replace(
+            self._scene,
+            ready=ready,
+            drawn=self.runner.drawn(self._scene.place),
+            can_undo=self._versions.can_undo,
+            can_redo=self._versions.can_redo,
+        )
         actions = self._window.actions_by_name
         actions["lesson-next"].setEnabled(self._scene.place + 1 < count)
         actions["lesson-back"].setEnabled(count > 0 and self._scene.place > 0)
@@ -199,7 +238,9 @@ class Teacher(QObject):
         """Bring the user's own session back, with everything that undo and redo know."""
         if self._aside is None:
             return
+        self._asked += 1
         self.runner.leave_lesson()
+        self._versions.clear()
         aside, self._aside, self._opened, self._to_show = self._aside, None, None, None
         self._scene = LessonScene(folder=self._scene.folder, shelf=self._scene.shelf)
         self._controller.ask_about(None)
@@ -210,90 +251,84 @@ class Teacher(QObject):
 
     # The user's own lessons.
 
-    def _draft(self) -> Draft:
-        name = self._window.front_dock()
-        dock = self._docks.get(name)
-        controller, session = self._controller, self._session
-        probe = controller.probe
-        kept = probe is not None and probe.pinned
-        return Draft(
-            session.state,
-            session.selected_id,
-            (probe.column_id, probe.row, probe.column) if probe is not None and kept else None,
-            name if dock is not None and name != "lessons" else "",
-            {} if dock is None else dock.settings(),
-            self._window.actions_by_name["tile"].isChecked(),
-        )
-
     def _save(self, sentence: str) -> None:
         """Add what the window shows to the user's own lesson, or begin one with it."""
         lesson = self._scene.lesson
         if lesson is None or not self._scene.own:
             self._new("My lesson", sentence)
             return
-        step = self._make_step(self._scene.name, sentence)
+        step = self.desk.step(self._scene.name, sentence)
         place = self._scene.place + 1
-        self._change((*lesson.steps[:place], step, *lesson.steps[place:]), place)
+        self._change(
+            dataclasses.replace(lesson, steps=(*lesson.steps[:place], step, *lesson.steps[place:])), place
+        )
 
     def _new(self, title: str, sentence: str = "The first step.") -> None:
         from texlab_core.documents.lessons import Lesson
 
-        folder = self._scene.folder
-        assert folder is not None
-        stem = title.lower().replace(" ", "-")
-        names = (stem, *(f"{stem}-{number}" for number in range(2, 1000)))
-        name = next(each for each in names if not (folder / f"{each}.json").exists())
-        self._write(name, Lesson(title=title, steps=(self._make_step(name, sentence),), folder=folder), 0)
+        name = self.desk.free_name(title)
+        self._write(name, Lesson(title=title, steps=(self.desk.step(name, sentence),), folder=self.desk.folder))
 
-    def _make_step(self, name: str, sentence: str) -> LessonStep:
-        sample = self._session.state.sample
-        file = "" if sample is None else f"{name}/{sample.source.sha256[:16]}.png"
-        return step_of(self._draft(), sentence, file)
-
-    def _change(self, steps: tuple[LessonStep, ...], place: int) -> None:
+    def _copy(self) -> None:
+        """Make a lesson that is given the user's own."""
         lesson = self._scene.lesson
-        if lesson is None or not self._scene.own:
-            self._controller.problem.emit("Only lessons of your own can be changed.")
+        if lesson is not None:
+            self._write(self.desk.free_name(self._scene.name), lesson, self._scene.place)
+
+    def _change(self, lesson: Lesson, place: int, *, remember: bool = True) -> None:
+        """Let the lesson be this one from now on; what a step shows already stays as it is."""
+        opened, scene = self._opened, self._scene
+        if opened is None or not scene.own:
+            raise LessonError("Only lessons of your own can be changed.")
+        check_steps(lesson)
+        if remember:
+            self._versions.note(Version(opened.lesson, scene.place))
+        order = shown_alike(opened.lesson, lesson)
+        known = tuple(each for each in order if each is not None)
+        if len(known) < len(order):
+            # A step whose pictures are still to be read.
+            self._write(scene.name, lesson, place)
             return
-        self._write(self._scene.name, dataclasses.replace(lesson, steps=steps), place)
+        self._opened = self.runner.rearrange(lesson, known)
+        self._scene = dataclasses.replace(scene, lesson=lesson)
+        self.desk.write(scene.name, lesson, partial(self._written, lesson))
+        if known[place] != scene.place:
+            # Who edits wants to go on with that.
+            self._go(place, stay=True)
+            return
+        self._scene = dataclasses.replace(self._scene, place=place)
+        self.runner.prepare_from(place)
+        self._tell()
 
-    def _write(self, name: str, lesson: Lesson, place: int) -> None:
-        folder = self._scene.folder
-        assert folder is not None
-        sample = self._session.state.sample
-        image = None if sample is None else sample.source
+    def _undo(self, *, redo: bool) -> None:
+        opened = self._opened
+        if opened is None or not self._scene.own:
+            return
+        now = Version(opened.lesson, self._scene.place)
+        version = self._versions.redo(now) if redo else self._versions.undo(now)
+        if version is not None:
+            self._change(version.lesson, version.place, remember=False)
 
-        def work(task: Any) -> None:
-            from texlab_core.documents.lessons import write_lesson
+    def _write(self, name: str, lesson: Lesson, place: int = 0) -> None:
+        """Write a lesson with the exemplar of the window beside it, and open it."""
+        asked = self._asked
 
-            folder.mkdir(parents=True, exist_ok=True)
-            if image is not None and source_of(image, "") == "":
-                save_picture(image.pixels, folder / name / f"{image.sha256[:16]}.png")
-            write_lesson(lesson, folder / f"{name}.json")
+        def done() -> None:
+            self._written(lesson)
+            # Who has gone elsewhere since stays there.
+            if asked == self._asked:
+                self._open(OpenLesson(name, own=True), place)
 
-        def done(_: Any) -> None:
-            self._scene = dataclasses.replace(self._scene, shelf=self._scene.shelf + 1)
-            self._controller.said.emit(f"Kept in the lesson {lesson.title}, {len(lesson.steps)} steps.")
-            self._open(OpenLesson(name, own=True), place)
+        self.desk.write(name, lesson, done, pictures=True)
 
-        self._controller.once("lesson", work, done)
-
-
-def read(wanted: OpenLesson, folder: Path | None) -> Lesson:
-    """Read a lesson (in the background)."""
-    from texlab_core.documents.lessons import read_lesson
-    from texlab_core.lessons.shelf import find
-
-    return read_lesson(folder / f"{wanted.name}.json") if wanted.own and folder is not None else find(wanted.name)
+    def _written(self, lesson: Lesson) -> None:
+        self._scene = dataclasses.replace(self._scene, shelf=self._scene.shelf + 1)
+        count = len(lesson.steps)
+        self._controller.said.emit(f"Kept in the lesson {lesson.title}, {count} step{'s' * (count > 1)}.")
+        self._tell()
 
 
-def save_picture(pixels: Any, path: Path) -> None:
-    """Write the exemplar of a step beside its lesson, unless it is there (in the background)."""
-    import numpy as np
-
-    from texlab_core.files.whole import write_whole
-    from texlab_core.images.formats.writing import encode_png
-
-    if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, encode_png(np.rint(pixels * 255).astype(np.uint8)))
+def check_steps(lesson: Lesson) -> None:
+    """Refuse what could not be read again; raises ``LessonError`` with one sentence."""
+    if not 1 <= len(lesson.steps) <= MAX_STEPS:
+        raise LessonError(f"A lesson has 1 to {MAX_STEPS} steps; this one would have {len(lesson.steps)}.")

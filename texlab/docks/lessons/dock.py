@@ -8,10 +8,7 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
-    QHBoxLayout,
     QPushButton,
-    QScrollArea,
-    QSlider,
     QSplitter,
     QTreeWidget,
     QTreeWidgetItem,
@@ -21,17 +18,30 @@ from PySide6.QtWidgets import (
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock
+from texlab.docks.lessons.editor import LessonEditor
+from texlab.docks.lessons.words import StepWords, words
 from texlab.docks.recent import Same
-from texlab.state.intentions import EditField, GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
+from texlab.state.intentions import (
+    ChangeLesson,
+    CopyLesson,
+    EditField,
+    GoToStep,
+    LeaveLesson,
+    NewLesson,
+    OpenLesson,
+    SaveStep,
+    UndoLesson,
+)
 from texlab.state.lesson_scene import NO_LESSON
 from texlab.widgets.picture_pane import PicturePane
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from PySide6.QtGui import QResizeEvent
 
+    from texlab.state.lesson_scene import LessonScene
     from texlab.state.scene import Scene
     from texlab_core.documents.lessons import Lesson, LessonStep
 
@@ -51,7 +61,7 @@ class LessonsDock(FramedDock):
     def build(self) -> None:
         """Make the list and the words."""
         self._lesson = NO_LESSON
-        self._is_folded = False
+        self._is_folded = self._edits_copy = False
         self._shown: LessonStep | None = None
         self.jump = QComboBox()
         self.jump.setMinimumContentsLength(24)
@@ -80,70 +90,48 @@ class LessonsDock(FramedDock):
         self.list.setRootIsDecorated(False)
         self.list.itemClicked.connect(self._clicked)
         self.list.itemActivated.connect(self._clicked)
-        splitter = QSplitter(Qt.Orientation.Horizontal)
-        splitter.addWidget(self.list)
-        splitter.addWidget(self._make_words())
-        splitter.setStretchFactor(1, 1)
-        splitter.setSizes([300, 700])
-        layout = QVBoxLayout(self.body)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(splitter)
-        self._show_words(None)
-        self._drawing.setVisible(False)
-
-    def _make_words(self) -> QWidget:
-        self.pane = PicturePane("lessons-drawing", "Drawing of the step")
-        self.lines = _words("lessons-lines", muted=True)
-        self.note = _words("lessons-note")
-        self.question_label = _words("lessons-question")
-        self.answer_label = _words("lessons-answer")
-        self.try_label = _words("lessons-try")
-        self.reveal = QPushButton("Show the answer")
-        self.reveal.setObjectName("lessons-reveal")
-        self.reveal.setCheckable(True)
-        self.reveal.toggled.connect(self.answer_label.setVisible)
-        set_tip(self.reveal, "The answer to the question, once everybody has had a try")
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("lessons-series")
-        self.slider.setAccessibleName("Values of the step")
-        self.slider.valueChanged.connect(self._slid)
-        self.slider_label = Label("")
-        self.slider_label.setObjectName("lessons-series-value")
-        self._slider_row = QWidget()
-        row = QHBoxLayout(self._slider_row)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.slider_label)
-        inner = QWidget()
-        column = QVBoxLayout(inner)
-        for each in (
-            self._slider_row,
-            self.note,
-            self.question_label,
-            self.reveal,
-            self.answer_label,
-            self.try_label,
-        ):
-            column.addWidget(each)
-        column.addStretch(1)
-        scroll = QScrollArea()
-        scroll.setObjectName("lessons-words")
-        scroll.setAccessibleName("Words of the step")
-        scroll.setWidgetResizable(True)
-        scroll.setWidget(inner)
-        self._drawing = QWidget()
-        beside = QVBoxLayout(self._drawing)
-        beside.setContentsMargins(0, 0, 0, 0)
-        beside.addWidget(self.pane, 1)
-        beside.addWidget(self.lines)
+        self.edit_button = QPushButton("Edit")
+        self.edit_button.setCheckable(True)
+        self.edit_button.toggled.connect(self._edit)
+        tip = "Change words and order of a lesson of your own; of another one a copy becomes your own"
+        self.add_control(self.edit_button, "edit", "Edit", tip)
+        self.words = StepWords()
+        self.words.slid.connect(self._slid)
+        self.editor = LessonEditor()
+        self.editor.changed.connect(lambda lesson, place: self.intention.emit(ChangeLesson(lesson, place)))
+        self.editor.chosen.connect(lambda place: self.intention.emit(GoToStep(place, stay=True)))
+        self.editor.undone.connect(lambda redo: self.intention.emit(UndoLesson(redo)))
+        self._drawing = self._make_drawing()
         both = QWidget()
         grid = QGridLayout(both)
         grid.setContentsMargins(0, 0, 0, 0)
-        grid.addWidget(scroll, 0, 0)
+        grid.addWidget(self.words, 0, 0)
+        grid.addWidget(self.editor.words, 0, 0)
         grid.addWidget(self._drawing, 0, 1)
         grid.setColumnStretch(0, 2)
         grid.setColumnStretch(1, 3)
-        return both
+        splitter = QSplitter(Qt.Orientation.Horizontal)
+        splitter.addWidget(self.list)
+        splitter.addWidget(self.editor)
+        splitter.addWidget(both)
+        splitter.setStretchFactor(2, 1)
+        splitter.setSizes([300, 300, 700])
+        layout = QVBoxLayout(self.body)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(splitter)
+        self.words.show_step(None)
+        self._drawing.setVisible(False)
+        self._show_parts()
+
+    def _make_drawing(self) -> QWidget:
+        self.pane = PicturePane("lessons-drawing", "Drawing of the step")
+        self.lines = words("lessons-lines", muted=True)
+        drawing = QWidget()
+        beside = QVBoxLayout(drawing)
+        beside.setContentsMargins(0, 0, 0, 0)
+        beside.addWidget(self.pane, 1)
+        beside.addWidget(self.lines)
+        return drawing
 
     # What there is.
 
@@ -188,31 +176,43 @@ class LessonsDock(FramedDock):
         given = lesson.lesson is not None
         self.leave_button.setEnabled(given)
         self.jump.setEnabled(given)
+        self.edit_button.setEnabled(given)
         if lesson is self._lesson:
             return
         if lesson.lesson is not self._lesson.lesson:
+            if (lesson.name, lesson.own) != (self._lesson.name, self._lesson.own):
+                self._begin_editing(lesson)
             self.jump.clear()
             steps = lesson.lesson.steps if lesson.lesson is not None else ()
             for number, step in enumerate(steps, 1):
                 self.jump.addItem(f"{number}. {step.sentence}")
         self._lesson = lesson
-        self._show_list()
+        self._show_parts()
+        self.editor.show_lesson(lesson)
         if given:
             self.jump.setCurrentIndex(lesson.place)
         self._mark()
         if lesson.step is not self._shown:
             self._shown = lesson.step
-            self._show_words(lesson.step)
+            self.words.show_step(lesson.step)
         drawn = lesson.drawn
         self._drawing.setVisible(lesson.step is not None and lesson.step.drawing is not None)
         self.pane.set_picture(None if drawn is None else drawn.sheet)
         self.lines.setText("" if drawn is None else "\n".join(drawn.lines))
 
+    def _begin_editing(self, lesson: LessonScene) -> None:
+        """Go on with the copy that was made to be edited, and with no other lesson."""
+        wanted = self._edits_copy and lesson.own
+        blocked = self.edit_button.blockSignals(True)
+        self.edit_button.setChecked(wanted)
+        self.edit_button.blockSignals(blocked)
+        self._edits_copy = False
+
     def fold_controls(self, folded: bool) -> None:
         """Leave the room to the step that is given, or show the list again."""
         super().fold_controls(folded)
         self._is_folded = folded
-        self._show_list()
+        self._show_parts()
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the size of the text."""
@@ -231,40 +231,12 @@ class LessonsDock(FramedDock):
         super().resizeEvent(event)
         self._give_width()
 
-    def _show_list(self) -> None:
-        self.list.setVisible(not (self._is_folded and self._lesson.lesson is not None))
-
-    def _show_words(self, step: LessonStep | None) -> None:
-        texts = ("", "", "", "") if step is None else (step.note, step.question, step.answer, step.try_this)
-        if step is None:
-            texts = ("Click a lesson to give it.", *texts[1:])
-        note, question, answer, try_this = texts
-        for label, text in (
-            (self.note, note),
-            (self.question_label, question),
-            (self.answer_label, answer),
-            (self.try_label, f"Try: {try_this}" if try_this else ""),
-        ):
-            label.setText(text)
-            label.setVisible(bool(text))
-        self.reveal.setChecked(False)
-        self.answer_label.setVisible(False)
-        self.reveal.setVisible(bool(answer))
-        series = None if step is None else step.series
-        self._slider_row.setVisible(series is not None)
-        if series is not None and step is not None:
-            own = step.columns[series.column].params().to_json().get(series.parameter)
-            blocked = self.slider.blockSignals(True)
-            self.slider.setRange(0, len(series.values) - 1)
-            self.slider.setPageStep(1)
-            self.slider.setValue(series.values.index(own) if own in series.values else 0)
-            self.slider.blockSignals(blocked)
-            self._tell_value(own)
-
-    def _tell_value(self, value: Any) -> None:
-        step = self._lesson.step
-        if step is not None and step.series is not None:
-            self.slider_label.setText(f"{step.series.parameter.replace('_', ' ')} {value}")
+    def _show_parts(self) -> None:
+        given, editing = self._lesson.lesson is not None, self.edit_button.isChecked()
+        self.list.setVisible(not editing and not (self._is_folded and given))
+        self.words.setVisible(not editing)
+        self.editor.setVisible(editing)
+        self.editor.words.setVisible(editing)
 
     def _mark(self) -> None:
         """Choose the lesson that is given in the list."""
@@ -285,12 +257,18 @@ class LessonsDock(FramedDock):
         if data is not None:
             self.intention.emit(OpenLesson(*data))
 
-    def _slid(self, place: int) -> None:
-        step = self._lesson.step
-        if step is not None and step.series is not None:
-            value = step.series.values[place]
-            self._tell_value(value)
-            self.intention.emit(EditField(self._lesson.column_id, step.series.parameter, value))
+    def _slid(self, parameter: str, value: Any) -> None:
+        self.intention.emit(EditField(self._lesson.column_id, parameter, value))
+
+    def _edit(self, wanted: bool) -> None:
+        """Show the fields instead of the words; of a lesson that is not the user's own, of a copy."""
+        if wanted and not self._lesson.own:
+            self.edit_button.setChecked(False)
+            self._edits_copy = True
+            self.intention.emit(CopyLesson())
+            return
+        self._edits_copy = False
+        self._show_parts()
 
 
 def shelf(folder: Path | None) -> tuple[list[tuple[str, bool, Lesson]], tuple[str, ...]]:
@@ -306,13 +284,3 @@ def _about(lesson: Lesson) -> str:
     from texlab_core.documents.lessons import PAPERS
 
     return "\n".join([lesson.summary, ", ".join(PAPERS[each] for each in lesson.papers)]).strip()
-
-
-def _words(name: str, *, muted: bool = False) -> Label:
-    label = Label("")
-    label.setObjectName(name)
-    label.setWordWrap(True)
-    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-    if muted:
-        label.setProperty("role", "muted")
-    return label
