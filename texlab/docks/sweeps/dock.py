@@ -18,7 +18,8 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.sweeps.panel import SweepPanel
-from texlab.docks.sweeps.sheet_view import LARGEST, SMALLEST, USUAL, ContactSheetView
+from texlab.docks.sweeps.places import LARGEST, SMALLEST, USUAL
+from texlab.docks.sweeps.sheet_view import ContactSheetView
 from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.numbers import duration, remaining
