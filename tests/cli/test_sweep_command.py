@@ -97,6 +97,35 @@ def test_json(call):
     }
 
 
+def test_one_preset_over_many_textures(call, tmp_path):
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for name, side in (("b.png", 30), ("a.png", 20)):
+        Image.effect_noise((side, side), 64).save(folder / name)
+    (folder / "c.png").write_bytes(b"no picture")
+    given = ("--textures", folder, "--textures", GRAVEL, "--method", "stub", "--size", "24x16", "--seed", "5")
+    said = call(*given, "--vary", "seed=1,2", "--json")
+    found = json.loads(said.out)
+    assert said.err.startswith("One texture is left out: ")
+    assert [each["name"] for each in found["textures"]] == ["a.png", "b.png", GRAVEL]
+    assert found["exemplar"] is None
+    assert found["size"] == {"width": 24, "height": 16}
+    names = ("a.png", "b.png", "Gravel")
+    assert [each["values"] for each in found["cells"]] == [
+        {"texture": name, "seed": seed} for seed in (1, 2) for name in names
+    ]
+    lines = call(*given).out.splitlines()
+    assert [line.partition(",")[0] for line in lines[:3]] == list(names)
+    # In a process of its own, and again from its own sheet (of textures that are found by their names).
+    call("--textures", GRAVEL, "--method", "stub", "--size", "24x16")
+    first = (tmp_path / "sheet.png").read_bytes()
+    call("--textures", GRAVEL, "--method", "stub", "--size", "24x16", "--processes", 1)
+    assert (tmp_path / "sheet.png").read_bytes() == first
+    (tmp_path / "sheet.png").rename(tmp_path / "first.png")
+    call("--sweep", tmp_path / "first.png")
+    assert (tmp_path / "sheet.png").read_bytes() == first
+
+
 def test_failed_cells_are_counted(call):
     lines = call(GRAVEL, "--method", "stub", "--vary", "level=1,3", "--size", "20x20").out.splitlines()
     assert lines[1] == "level 3, failed: level: 3 is what this stub fails at."

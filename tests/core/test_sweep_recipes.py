@@ -111,7 +111,7 @@ def test_the_sheet_of_a_sweep_holds_the_numbers_of_its_cells(tmp_path):
     [
         ([], "it is no sweep"),
         (document(format="texlab-preset"), "it is no sweep"),
-        (document(version=2), "made by a newer TexLab"),
+        (document(version=3), "made by a newer TexLab"),
         (document(version=1.0), "version: must be a whole number"),
         (document(colour=1), "key: must be one of"),
         (document(name=...), "name: must be text"),

@@ -6,7 +6,7 @@ import pytest
 from dock_scenes import check_controls
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication
-from sweep_bench import LEFT, RECIPE, choose, complete, enter, make_bench, set_range, start  # noqa: F401
+from sweep_bench import LEFT, PATIENCE_MS, RECIPE, choose, complete, enter, make_bench, set_range, start  # noqa: F401
 
 from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab.docks.sweeps.axis import AxisEditor
@@ -53,7 +53,7 @@ def test_the_keyboard_reaches_everything(qtbot, bench):
 def test_knobs_and_their_usual_ranges(qtbot, bench):
     axis = bench().dock.panel.across
     assert [axis.knob.itemText(k) for k in range(axis.knob.count())] == [
-        "level", "grain", "window", "rounds", "border", "exact", "detail", "seed",
+        "level", "grain", "window", "rounds", "border", "exact", "detail", "seed", "texture",
     ]  # fmt: skip
     assert axis.vary() == Vary("level", (0.0, 0.8, 1.6, 2.4, 3.2, 4.0))
     choose(qtbot, axis.knob, "grain")
@@ -189,6 +189,26 @@ def test_a_recipe_sets_knobs_and_offers_its_parameters(qtbot, bench):
     assert dock.panel.base_box.count() == 2
     choose(qtbot, dock.panel.ready_box, "levels")
     assert dock.panel.plan().axes == RECIPE.axes
+
+
+def test_a_ready_made_sweep_is_chosen_by_name_now_or_when_it_is_offered(qtbot, bench):
+    other = find_method("heeger-bergen").params(scales=1, iterations=1)
+    here = bench(Column(1, "heeger-bergen", other), Column(2, "stub", StubParams()))
+    dock, panel = here.dock, here.dock.panel
+    assert dock.take_settings({"ready-made": RECIPE.name}) == ()
+    assert panel.chosen_sweep is None
+    here.session.select(2)
+    qtbot.waitUntil(lambda: panel.chosen_sweep == RECIPE, timeout=PATIENCE_MS)
+    assert panel.plan().axes == RECIPE.axes
+    assert panel.plan().params == RECIPE.params
+    # At once, where it is offered; what the user chooses meanwhile stays.
+    choose(qtbot, panel.ready_box, "own choice")
+    dock.take_settings({"ready-made": RECIPE.name})
+    assert panel.chosen_sweep == RECIPE
+    dock.take_settings({"ready-made": "of-another-method"})
+    choose(qtbot, panel.ready_box, "own choice")
+    panel.show_sweeps((RECIPE,))
+    assert panel.chosen_sweep is None
 
 
 def test_own_choice_after_a_recipe(qtbot, bench):

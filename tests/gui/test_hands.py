@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtGui import QAction, QContextMenuEvent
 from PySide6.QtWidgets import QApplication, QListWidget, QMenu, QTableWidget, QWidget
 
-from tests.gui.conftest import wait_idle
+from tests.gui.conftest import ids, wait_idle
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.plain import TIP_WIDTH
 from texlab.widgets.tables import add_copying, list_text
@@ -94,7 +94,17 @@ def test_everything_in_the_window(qtbot: Any, explorer: Explorer) -> None:
     # A setting leads to its control.
     best_first(palette._entries, "fill radius")[0].run()
     assert window.front_dock() == "fill"
+    # A ready-made sweep is chosen in its panel, with a column of its method.
+    before, wanted = ids(explorer), best_first(palette._entries, "de bonet fig 11")[0]
     palette.close()
+    wanted.run()
+    panel = next(each for each in explorer.docks if each.name == "sweeps").panel
+    qtbot.waitUntil(lambda: panel.chosen_sweep is not None)
+    assert panel.chosen_sweep.name == "de-bonet-fig-11"
+    assert explorer.session.selected_column.method == "de-bonet"
+    assert len(ids(explorer)) == len(before) + 1
+    explorer.session.undo()
+    assert ids(explorer) == before
     wait_idle(qtbot, explorer)
 
 

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QApplication, QMenu
 from sweep_bench import LEFT, PATIENCE_MS, choose, click_cell, complete, make_bench, set_range  # noqa: F401
 
 from tests.stub_method import StubParams, stub  # noqa: F401
-from texlab.docks.sweeps.dock import arranged, sortings
 from texlab.docks.sweeps.places import NARROWEST
+from texlab.docks.sweeps.words import arranged, sortings
 from texlab.state.changes import with_cell
 from texlab.state.session import Column, State
 from texlab.style.theme import LIGHT
@@ -134,13 +134,13 @@ def test_cells_become_columns_and_are_kept(qtbot, bench):
     qtbot.keyClick(canvas, Qt.Key.Key_N)
     assert [each.seed for each in session.state.columns] == [None, None, 3]
     qtbot.keyClick(canvas, Qt.Key.Key_K)
-    assert dock.kept == {2}
+    assert dock.kept == [2]
     assert canvas.describe(2).startswith("Kept: ")
     qtbot.mouseClick(dock.only_kept, LEFT, pos=QPoint(8, dock.only_kept.height() // 2))
     assert canvas.order == [2]
     assert canvas.rect_of(0).isEmpty()
     qtbot.keyClick(canvas, Qt.Key.Key_K)
-    assert dock.kept == set()
+    assert dock.kept == []
     assert canvas.order == []
     assert dock.only_kept.isEnabled()
     qtbot.mouseClick(dock.only_kept, LEFT, pos=QPoint(8, dock.only_kept.height() // 2))
@@ -154,7 +154,7 @@ def test_cells_become_columns_and_are_kept(qtbot, bench):
         "&Take the parameters", "Open as a &new column", "&Keep",
     ]  # fmt: skip
     menu.actions()[2].trigger()
-    assert dock.kept == {canvas.current}
+    assert dock.kept == [canvas.current]
     menu.close()
     qtbot.waitUntil(lambda: not here.controller.busy, timeout=PATIENCE_MS)
 

@@ -110,7 +110,11 @@ def test_every_tab_keeps_its_own_keys_and_no_others(qtbot: Any, everything: Expl
     assert of_tabs.keys() <= titles.keys()
     assert {"1", "Esc", "+", "Ctrl+Z", "Ctrl+C", "PgDown", "L"} <= window_keys
     # Only of a state that another test brings about.
-    waiting = {"Pyramid": {"Esc", "0", "1", "2", "4"}, "Sweeps": {"Esc", "N", "K", *ARROWS}, "Dependence": {"Esc"}}
+    waiting = {
+        "Pyramid": {"Esc", "0", "1", "2", "4"},
+        "Sweeps": {"Esc", "N", "K", "C", *ARROWS},
+        "Dependence": {"Esc"},
+    }
     # They have no picture here; the next test looks at them alone.
     waiting |= {name: of_tabs[name] for name in ("Solid", "Inputs", "Fill", "Lessons")}
     for title, dock in titles.items():

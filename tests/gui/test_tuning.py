@@ -9,9 +9,10 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 
 from tests.gui.conftest import drag, hb, ids, result_image, wait_idle
-from texlab.columns.comparison import difference_picture, other_of
+from texlab.columns.comparison import other_of
 from texlab.columns.magnifier import ACROSS, piece_around
 from texlab.style.pictures import to_picture
+from texlab.widgets.pair_layer import difference_picture
 from texlab.window.fuzzy import fit
 from texlab.window.palette import CommandPalette, Entry, best_first, of_actions
 

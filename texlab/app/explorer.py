@@ -293,6 +293,7 @@ class Explorer(QObject):
         parameters.intention.connect(self.carrier.carry_out)
         parameters.help_wanted.connect(self.desk.show_help)
         self.desk.lesson_wanted.connect(lambda name, own: self.teacher.carry_out(OpenLesson(name, own)))
+        self.desk.tab_wanted.connect(self._open_tab)
         parameters.dock_wanted.connect(window.raise_dock)
         exemplar = self.workspace.exemplar
         exemplar.crop_changed.connect(controller.edit_crop)

@@ -47,21 +47,30 @@ class Teller:
         self._task = task
         self._made: list[ShownCell] = []
         self._fraction = 0.0
+        self._more: dict[str, Any] = {}
+
+    def tell(self, **more: Any) -> None:
+        """Report what else there is to see of it, with this and every later report."""
+        self._more |= more
+        self._report()
+
+    def _report(self) -> None:
+        self._task.progress(CellsMade(tuple(self._made), self._fraction, self._more))
 
     def add(self, cell: ShownCell) -> None:
         """Report another cell."""
         self._made.append(cell)
-        self._task.progress(CellsMade(tuple(self._made), self._fraction))
+        self._report()
 
     def advance(self, share: float) -> None:
         """Report the share done, when that is due."""
         self._fraction = share
         if self._task.due():
-            self._task.progress(CellsMade(tuple(self._made), share))
+            self._report()
 
     def end(self, **more: Any) -> CellsMade:
         """Return everything at the end."""
-        return CellsMade(tuple(self._made), 1.0, more)
+        return CellsMade(tuple(self._made), 1.0, self._more | more)
 
 
 class CellRunner(LateWorker):

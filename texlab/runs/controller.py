@@ -93,6 +93,7 @@ class Controller(QObject):
         self._sweeps.changed.connect(self._refresh.start)
         self._tuning = TuningRunner(self.slots, self.warmth, self)
         self._tuning.changed.connect(self._refresh.start)
+        self._opened: tuple[str, ...] = ()
         self._fills = FillRunner(self.slots, self.warmth, self)
         self._fills.changed.connect(self._refresh.start)
         self.all_idle.connect(self._load_the_rest)
@@ -131,7 +132,14 @@ class Controller(QObject):
             self._source(),
             self._fills.scene,
             self.session.history,
+            self._opened,
         )
+
+    def tell_opened(self, paths: tuple[str, ...]) -> None:
+        """Show the docks which files are open; the newest first."""
+        if paths != self._opened:
+            self._opened = paths
+            self._refresh.start()
 
     def _source(self) -> ImageInput | None:
         """Return the whole picture of the exemplar in use."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from texlab.runs.cell_runner import CellRunner, CellsMade
-from texlab.runs.sweep_run import SweepRun, sweep_of
+from texlab.runs.sweep_run import SweepRun, grid_of, sweep_of
 from texlab.state.sweeps import SweepScene
 
 if TYPE_CHECKING:
@@ -33,6 +34,10 @@ class SweepRunner(CellRunner):
         """Run what was asked for; what cannot be run is said in ``scene.problem``, and what runs goes on."""
 
         def make(column: Column, exemplar: ImageInput) -> tuple[SweepScene, Request]:
+            if plan.textures is not None:
+                self._begun = time.perf_counter()
+                read = partial(grid_of, plan, state, column)
+                return SweepScene(asked=plan, plan=plan), SweepRun(read, self._slots)
             sweep = sweep_of(plan, state, column, exemplar)
             self._begun = time.perf_counter()
             return SweepScene(asked=plan, plan=plan, sweep=sweep), SweepRun(sweep, self._slots)

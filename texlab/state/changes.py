@@ -211,9 +211,10 @@ def rescaled(sample: Sample, scale: float) -> Sample:
 def with_cell_column(state: State, cell: Cell, after: int) -> tuple[State, int]:
     """Return the state with a new column that has what made a cell (all but the size), and its id.
 
-    It stands behind the column with the id ``after``, or at the end; nothing else is changed.
+    It stands behind the column with the id ``after``, or at the end. The exemplar changes where the cell is of
+    another texture; nothing else is changed.
     """
-    job = cell.job
+    job, state = cell.job, _with_texture_of(state, cell)
     inputs = tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
     seed = None if job.seed == state.seed else job.seed
     column = Column(state.next_id, job.method, job.params, inputs, seed=seed)
@@ -225,6 +226,17 @@ def with_cell_column(state: State, cell: Cell, after: int) -> tuple[State, int]:
     return dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), column.id
 
 
+def _with_texture_of(state: State, cell: Cell) -> State:
+    """Return the state with the exemplar of a cell of a grid over many textures."""
+    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.sheets.sweep import TEXTURE
+
+    texture = cell.job.inputs.get("exemplar")
+    if TEXTURE not in cell.values or not isinstance(texture, ImageInput):
+        return state
+    return dataclasses.replace(state, sample=sample_as_used(texture))
+
+
 def by_hand(params: Params) -> int:
     """Return how many cells of threshold tables were set by hand in some parameters."""
     tables = (getattr(params, each.name) for each in describe(type(params)) if each.type is ThresholdTable)
@@ -232,7 +244,7 @@ def by_hand(params: Params) -> int:
 
 
 def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State, int] | None:
-    """Return the state in which a column has a cell's parameters (and its seed, when that is varied).
+    """Return the state in which a column has a cell's parameters (and its seed or texture, where that is varied).
 
     Parameters
     ----------
@@ -250,6 +262,7 @@ def with_cell(state: State, cell: Cell, wanted: tuple[int, ...]) -> tuple[State,
     columns = [column for column in map(state.column, wanted) if column is not None]
     for column in (*columns, *state.columns):
         if column.method == cell.job.method:
+            state = _with_texture_of(state, cell)
             changed = state.with_column(dataclasses.replace(column, params=cell.job.params))
             if "seed" not in cell.values:
                 return changed, column.id

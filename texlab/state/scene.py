@@ -201,6 +201,8 @@ class Scene:
         The newest fill of a whole picture.
     history
         The steps that undo and redo know.
+    opened
+        Paths of the pictures that were opened together, else of those opened of late, the newest first.
     """
 
     exemplar: ImageInput | None = None
@@ -216,6 +218,7 @@ class Scene:
     source: ImageInput | None = None
     fill: FillScene = NO_FILL
     history: History = NO_HISTORY
+    opened: tuple[str, ...] = ()
 
     @property
     def selected(self) -> ColumnScene | None:

@@ -12,19 +12,34 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class Textures:
+    """Many textures that one preset is held against.
+
+    Parameters
+    ----------
+    texts
+        Files, folders, ``gallery:NAME``, or a class of the gallery as in ``gallery:structured``; none is read yet.
+    """
+
+    texts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class SweepPlan:
     """What the user asked for.
 
     Parameters
     ----------
     axes
-        One or two.
+        One or two; beside textures, none or one.
     side
         Height and width of the cells in pixels; None takes the size of the columns.
     params
         What all cells share but for what is varied; None takes the column's.
     name, note
         Of the ready-made sweep that it is; they are written into the sheet.
+    textures
+        What runs across instead of a knob; None stays with the exemplar of the columns.
     """
 
     axes: tuple[Vary, ...]
@@ -32,6 +47,7 @@ class SweepPlan:
     params: Params | None = None
     name: str = "sweep"
     note: str = ""
+    textures: Textures | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +100,18 @@ class SweepScene(CellsScene):
     asked
         What was asked for last, also when it could not be started.
     plan, sweep
-        What the cells are of; None when there are none yet.
+        What the cells are of; None when there are none yet. Over many textures the sweep comes when they are read.
     seconds
         Wall time since the start, at the newest report.
+    left_out
+        What is said of textures that have no place in the grid.
     """
 
     asked: SweepPlan | None = None
     plan: SweepPlan | None = None
     sweep: Sweep | None = None
     seconds: float = 0.0
+    left_out: str = ""
 
 
 NO_SWEEP = SweepScene()

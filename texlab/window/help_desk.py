@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QPoint, Qt, Signal
 from PySide6.QtWidgets import QWidget
 
+from texlab.state.changes import with_method
 from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
 from texlab.window.palette import CommandPalette, Entry, of_actions
@@ -39,10 +40,12 @@ class HelpDesk(QObject):
     lessons
         The folder of the user's own lessons.
 
-    ``lesson_wanted(name, own)`` when a page or the palette leads to a lesson, or to one of the user's own.
+    ``lesson_wanted(name, own)`` when a page or the palette leads to a lesson, or to one of the user's own;
+    ``tab_wanted(name, settings)`` when something in a tab is wanted.
     """
 
     lesson_wanted = Signal(str, bool)
+    tab_wanted = Signal(str, object)
 
     def __init__(self, window: MainWindow, session: Session, lessons: Path) -> None:
         super().__init__(window)
@@ -120,12 +123,15 @@ class HelpDesk(QObject):
         )
 
     def _show_sweep(self, sweep: SweepRecipe) -> None:
-        """Show a ready-made sweep in its panel, in a column of its method."""
-        columns = self._session.state.columns
-        column = next((each for each in columns if each.method == sweep.method), None)
-        if column is not None:
-            self._session.select(column.id)
-        self._window.raise_dock("sweeps")
+        """Choose a ready-made sweep in its panel, with a column of its method, a new one where there is none."""
+        session = self._session
+        chosen = session.selected_column
+        if chosen is None or chosen.method != sweep.method:
+            state = with_method(session.state, sweep.method)
+            if state is not session.state:
+                session.apply(state, f"column {sweep.method}")
+            session.select(next(each.id for each in state.columns if each.method == sweep.method))
+        self.tab_wanted.emit("sweeps", {"ready-made": sweep.name})
 
     def _settings(self) -> list[Entry]:
         """Return the controls of the panels: each leads there."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from texlab.state.changes import levels_words, part_words, reduced_words
+from texlab.storage.projects import is_project
 from texlab.style.pictures import describe_pixel
 from texlab_core.engine.late_maps import made_map
 from texlab_core.engine.registry import methods
@@ -175,6 +176,9 @@ class Presenter(QObject):
             self._window.gallery.strip.mark(sample.path)
             self._window.setWindowTitle(f"{name.removeprefix('gallery:')} - TexLab")
             self._window.show_recent(self._settings.recent, lambda path, _=False: self.recent_chosen.emit(path))
+            together = [each for each in self._window.gallery.strip.sources if isinstance(each, str)]
+            open_files = [each for each in together or self._settings.recent if not is_project(each)]
+            self._controller.tell_opened(tuple(open_files))
 
     def _source_size(self) -> tuple[int, int]:
         prepared = self._controller.prepared

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QSignalBlocker
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
-from texlab.columns.comparison import GAINS, Comparison, Mode, other_of
+from texlab.columns.comparison import Comparison, other_of
 from texlab.columns.magnifier import Magnifier
 from texlab.style.text_size import grow_with_text
+from texlab.widgets.pair_layer import GAINS, Mode
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 

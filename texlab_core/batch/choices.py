@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import fnmatch
-import glob
-import os
 import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.engine.inputs import Crop
@@ -15,17 +11,16 @@ from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.regular import read_regular
 from texlab_core.images.exemplar import as_exemplar, scaled_size
-from texlab_core.images.formats.kinds import READABLE_SUFFIXES
-from texlab_core.images.gallery import CLASSES, PREFIX, find_entry, gallery
+from texlab_core.images.sources import sources_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from texlab_core.engine.inputs import ImageInput
 
 MAX_EXEMPLARS = 100_000
 MAX_LIST_BYTES = 16 * 2**20
-_MAGIC = re.compile(r"[*?\[]")
 _KEYS = ("from", "list", "scale", "scales", "crops")
 
 
@@ -146,7 +141,7 @@ def choices_of(entries: list[Any], folder: Path) -> tuple[ExemplarChoice, ...]:
 
 def _choices(entry: Any, folder: Path) -> Iterator[ExemplarChoice]:
     if isinstance(entry, str):
-        yield from (ExemplarChoice(source, name) for source, name in _sources(entry, folder))
+        yield from (ExemplarChoice(source, name) for source, name in sources_of(entry, folder))
         return
     if not isinstance(entry, dict) or not ("from" in entry or "list" in entry):
         raise InputError(
@@ -160,7 +155,7 @@ def _choices(entry: Any, folder: Path) -> Iterator[ExemplarChoice]:
     crops = _crops(entry.get("crops"))
     scales = _scales(entry)
     for text in texts:
-        for source, name in _sources(text, folder):
+        for source, name in sources_of(text, folder):
             for scale in scales:
                 yield from (ExemplarChoice(source, name, scale, crop) for crop in crops)
 
@@ -183,52 +178,6 @@ def _lines(files: list[str], folder: Path) -> list[str]:
                 raise
             reason = getattr(bad, "strerror", None) or "it is not UTF-8 text"
             raise InputError(f"list: {file} cannot be read ({reason}).") from bad
-    return found
-
-
-def _sources(text: str, folder: Path) -> Iterator[tuple[str, str]]:
-    """Return the sources that a text stands for, with how to call each."""
-    if text.startswith(PREFIX):
-        yield from ((uri, uri) for uri in _textures(text))
-        return
-    path = folder / text
-    if not text or "\0" in text:
-        raise InputError("inputs: the name of an image is empty.")
-    if path.is_dir():
-        names = sorted(each.name for each in path.iterdir() if _is_image(each.name) and each.is_file())
-        if not names:
-            raise InputError(f"inputs: the folder {text} holds no image.")
-        yield from ((str(path / name), _joined(text, name)) for name in names)
-    elif _MAGIC.search(text) and not path.exists():
-        names = sorted(glob.glob(text, root_dir=folder, recursive=True))
-        names = [name for name in names if _is_image(name) and (folder / name).is_file()]
-        if not names:
-            raise InputError(f"inputs: {text} matches no image.")
-        yield from ((str(folder / name), Path(name).as_posix()) for name in names)
-    elif path.exists():
-        yield str(path), text
-    else:
-        raise InputError(f"inputs: there is no file or folder {text}.")
-
-
-def _joined(folder: str, name: str) -> str:
-    return name if folder in ("", ".") else f"{folder.rstrip('/')}/{name}"
-
-
-def _is_image(name: str) -> bool:
-    return os.path.splitext(name)[1].lower() in READABLE_SUFFIXES
-
-
-def _textures(uri: str) -> list[str]:
-    wanted = uri.removeprefix(PREFIX)
-    if wanted in CLASSES:
-        found = [each.uri for each in gallery() if each.cls == wanted]
-    elif _MAGIC.search(wanted):
-        found = [each.uri for each in gallery() if fnmatch.fnmatchcase(each.name, wanted)]
-    else:
-        return [find_entry(uri).uri]
-    if not found:
-        raise InputError(f"inputs: {uri} matches no texture of the gallery.")
     return found
 
 

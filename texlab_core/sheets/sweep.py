@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from texlab_core.engine.result import Result
 
 MAX_CELLS = 400
+# The axis of a grid over many textures.
+TEXTURE = "texture"
 _POLL_S = 0.01
 _FORMS = "NAME=FROM:TO:COUNT, NAME=FROM:TO:COUNT:log or NAME=A,B,C"
 
@@ -143,7 +145,6 @@ class Sweep:
     jobs: tuple[Job, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        params = type(self.base.params)
         if not 1 <= len(self.axes) <= 2:
             raise InputError(f"A sweep varies one or two knobs, got {len(self.axes)}.")
         if len({axis.name for axis in self.axes}) < len(self.axes):
@@ -151,8 +152,7 @@ class Sweep:
         count = math.prod(len(axis.values) for axis in self.axes)
         if count > MAX_CELLS:
             raise InputError(f"A sweep has at most {MAX_CELLS} cells, got {count}.")
-        axes = tuple(Vary.of(axis.name, axis.values, params) for axis in self.axes)
-        object.__setattr__(self, "axes", axes)
+        object.__setattr__(self, "axes", tuple(self._checked(axis) for axis in self.axes))
         object.__setattr__(self, "jobs", tuple(self._job(index) for index in range(count)))
 
     def values(self, index: int) -> Mapping[str, Any]:
@@ -162,6 +162,9 @@ class Sweep:
         if len(self.axes) == 2:
             found[self.axes[1].name] = self.axes[1].values[index // len(across.values)]
         return frozen_mapping(found)
+
+    def _checked(self, axis: Vary) -> Vary:
+        return Vary.of(axis.name, axis.values, type(self.base.params))
 
     def _job(self, index: int) -> Job:
         changes = dict(self.values(index))
@@ -199,7 +202,7 @@ class Cell:
     @property
     def setting(self) -> str:
         """What was varied, in words: "alpha 0.15, beta 1"."""
-        return ", ".join(f"{name.replace('_', ' ')} {show(value)}" for name, value in self.values.items())
+        return setting_words(self.values)
 
     @property
     def evidence(self) -> str:
@@ -223,6 +226,24 @@ def show(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
     return str(value) if isinstance(value, int | str) else type(value).__name__
+
+
+def value_words(name: str, value: object) -> str:
+    """Return a varied value with its name: "alpha 0.15"; a texture needs none."""
+    return show(value) if name == TEXTURE else f"{name.replace('_', ' ')} {show(value)}"
+
+
+def setting_words(values: Mapping[str, Any]) -> str:
+    """Return what is varied in words: "alpha 0.15, beta 1"."""
+    return ", ".join(value_words(name, value) for name, value in values.items())
+
+
+def heads(sweep: Sweep) -> tuple[list[str], list[str]]:
+    """Return what stands above the columns and left of the rows of a grid; a series has neither."""
+    if len(sweep.axes) < 2:
+        return [], []
+    across, down = ([value_words(axis.name, value) for value in axis.values] for axis in sweep.axes)
+    return across, down
 
 
 def sweep_of(base: Job, texts: list[str]) -> Sweep:

@@ -21,7 +21,8 @@ from texlab_core.files.resources import resource
 from texlab_core.files.wording import did_you_mean
 from texlab_core.images.formats.png_text import SIGNATURE, read_text
 from texlab_core.sheets.figure import FIGURE_SUFFIXES
-from texlab_core.sheets.sweep import Sweep, Vary, check_knob, spread
+from texlab_core.sheets.sweep import MAX_CELLS, Sweep, Vary, check_knob, spread
+from texlab_core.sheets.texture_grid import TextureGrid, texture_grid
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,9 +31,11 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method
     from texlab_core.sheets.sweep import Cell
+    from texlab_core.sheets.texture_grid import LeftOut
 
 FORMAT = "texlab-sweep"
-VERSION = 1
+# Version 1 has no textures, and is what is written where there are none.
+VERSION = 2
 TEXT_KEY = "texlab-sweep"
 _FIGURE_HEAD = 4 * strict_json.MAX_BYTES
 _KEYS = (
@@ -48,6 +51,7 @@ _KEYS = (
     "exemplar",
     "inputs",
     "measures",
+    "textures",
     "versions",
 )
 _Data = dict[str, Any]
@@ -105,7 +109,7 @@ class SweepRecipe:
     method
         Id of a registered method.
     axes
-        One or two knobs and their values.
+        One or two knobs and their values; none or one beside textures.
     parameters
         JSON values of the knobs that differ from the defaults in every cell.
     note
@@ -121,11 +125,14 @@ class SweepRecipe:
     measures
         Of a sheet: numbers about each cell's result by the ids of their measures, row by row; nothing for a cell
         that failed or was not run. Empty for a sweep that is still to be run.
+    textures
+        What runs across in a grid over many textures, which has no more than one knob down; empty for a sweep of
+        one exemplar.
     """
 
     name: str
     method: str
-    axes: tuple[Vary, ...]
+    axes: tuple[Vary, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
     size: tuple[int, ...] | None = None
@@ -133,6 +140,7 @@ class SweepRecipe:
     exemplar: ExemplarChoice | None = None
     inputs: Mapping[str, ExemplarChoice] = field(default_factory=dict)
     measures: tuple[Mapping[str, float], ...] = ()
+    textures: tuple[ExemplarChoice, ...] = ()
 
     @property
     def params(self) -> Params:
@@ -147,32 +155,56 @@ class SweepRecipe:
         InputError
             When there is no exemplar, or the method cannot work with it.
         """
+        if exemplar is None and self.textures:
+            return self.grid(tuple(each.load() for each in self.textures), given)[0]
         if exemplar is None:
             if self.exemplar is None:
                 raise RecipeError(f"The sweep {self.name} does not say for which exemplar; name one.")
             exemplar = self.exemplar.load()
+        if not self.axes:
+            raise RecipeError(f"The sweep {self.name} varies nothing but the texture.")
         size: Any = self.size
-        own = {name: choice for name, choice in self.inputs.items() if name not in (given or {})}
-        inputs: dict[str, Input] = {name: choice.load() for name, choice in own.items()}
-        inputs |= {**(given or {}), "exemplar": exemplar}
+        inputs = {**self._further(given), "exemplar": exemplar}
         return Sweep(
             Job(method=self.method, inputs=inputs, params=self.params, size=size, seed=self.seed), self.axes
         )
+
+    def grid(
+        self, textures: Sequence[ImageInput], given: Mapping[str, Input] | None = None
+    ) -> tuple[TextureGrid, LeftOut]:
+        """Return the grid over these textures, and those that have no place in it; raises ``InputError``."""
+        if len(self.axes) > 1:
+            raise RecipeError("A grid over textures varies at most one knob, which stands down.")
+        return texture_grid(
+            textures,
+            self.method,
+            self.params,
+            size=self.size,
+            seed=self.seed,
+            inputs=self._further(given),
+            down=self.axes[0] if self.axes else None,
+        )
+
+    def _further(self, given: Mapping[str, Input] | None) -> dict[str, Input]:
+        own = {name: choice for name, choice in self.inputs.items() if name not in (given or {})}
+        return {name: choice.load() for name, choice in own.items()} | dict(given or {})
 
     @classmethod
     def of(cls, sweep: Sweep, name: str, note: str = "", cells: Sequence[Cell] = ()) -> SweepRecipe:
         """Describe a sweep, with the numbers about the cells that are given."""
         base = sweep.base
         known = {cell.index: known_measures(cell.measures) for cell in cells if cell.measures}
+        textures = sweep.textures if isinstance(sweep, TextureGrid) else ()
         return cls(
             name=name,
             method=base.method,
-            axes=sweep.axes,
+            axes=sweep.axes[1:] if textures else sweep.axes,
             parameters=base.params.to_json(),
             note=note,
             size=base.size,
             seed=base.seed,
-            exemplar=ExemplarChoice.of(exemplar_of(base.inputs)),
+            exemplar=None if textures else ExemplarChoice.of(exemplar_of(base.inputs)),
+            textures=tuple(map(ExemplarChoice.of, textures)),
             inputs=frozen_mapping(
                 {
                     role: ExemplarChoice.of(each)
@@ -187,7 +219,8 @@ class SweepRecipe:
 
     def to_json(self) -> _Data:
         """Return it as JSON data."""
-        data: _Data = {"format": FORMAT, "version": VERSION, "name": self.name, "note": self.note}
+        version = VERSION if self.textures else 1
+        data: _Data = {"format": FORMAT, "version": version, "name": self.name, "note": self.note}
         data |= {"method": self.method, "parameters": dict(self.parameters)}
         data["vary"] = [
             {"name": axis.name, "values": [_plain(each) for each in axis.values]} for axis in self.axes
@@ -201,6 +234,8 @@ class SweepRecipe:
             data["inputs"] = {role: choice.to_json() for role, choice in self.inputs.items()}
         if self.measures:
             data["measures"] = [dict(numbers) for numbers in self.measures]
+        if self.textures:
+            data["textures"] = [choice.to_json() for choice in self.textures]
         return data
 
 
@@ -231,10 +266,15 @@ def _from_json(given: object) -> SweepRecipe:
     parameters = _typed(data, "parameters", dict, {})
     named = method.params.completed(parameters)
     complete = method.params.from_json(named).to_json()
-    vary = _typed(data, "vary", list)
-    if not 1 <= len(vary) <= 2:
+    vary, textures = _typed(data, "vary", list), _typed(data, "textures", list, [])
+    if textures and len(vary) > 1:
+        raise RecipeError(f"vary: must hold at most one knob beside textures, got {len(vary)}.")
+    if not textures and not 1 <= len(vary) <= 2:
         raise RecipeError(f"vary: must hold one or two knobs, got {len(vary)}.")
     axes = tuple(_axis(each, method.params) for each in vary)
+    cells = max(len(textures), 1) * math.prod(len(axis.values) for axis in axes)
+    if len(textures) > MAX_CELLS:
+        raise RecipeError(f"textures: must hold at most {MAX_CELLS}, got {len(textures)}.")
     return SweepRecipe(
         name=_text(data, "name", 80),
         method=method.id,
@@ -245,7 +285,8 @@ def _from_json(given: object) -> SweepRecipe:
         seed=check_seed(data.get("seed", 0)),
         exemplar=_exemplar(data.get("exemplar")),
         inputs=_inputs(data.get("inputs", {}), method),
-        measures=_measures(_typed(data, "measures", list, []), math.prod(len(axis.values) for axis in axes)),
+        measures=_measures(_typed(data, "measures", list, []), cells),
+        textures=tuple(_choice(each, "textures") for each in textures),
     )
 
 

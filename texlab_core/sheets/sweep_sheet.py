@@ -9,7 +9,7 @@ from texlab_core.engine.sizes import size_text
 from texlab_core.errors import ParamError
 from texlab_core.sheets.contact_sheet import LARGEST_CELL, Tile, check_sheet, contact_sheet, series_columns
 from texlab_core.sheets.figure import Figure, encode_figure, figure_page, is_figure
-from texlab_core.sheets.sweep import show
+from texlab_core.sheets.sweep import TEXTURE, heads, show
 
 if TYPE_CHECKING:
     import os
@@ -47,13 +47,13 @@ def sweep_sheet(
     is_grid = len(sweep.axes) == 2
     tiles = _tiles(sweep, cells)
     across = len(sweep.axes[0].values) if is_grid else columns or series_columns(len(tiles))
-    heads = _heads(sweep)
+    across_heads, row_heads = heads(sweep)
     return contact_sheet(
         tiles,
         across,
         title=sweep_title(sweep),
-        column_heads=heads[0],
-        row_heads=heads[1],
+        column_heads=across_heads,
+        row_heads=row_heads,
         largest=largest,
     )
 
@@ -62,16 +62,6 @@ def _tiles(sweep: Sweep, cells: Sequence[Cell]) -> list[Tile]:
     """Return the picture or the reason of every place."""
     finished = {cell.index: cell for cell in cells}
     return [_tile(finished.get(index), len(sweep.axes) == 2) for index in range(len(sweep.jobs))]
-
-
-def _heads(sweep: Sweep) -> tuple[list[str], list[str]]:
-    """Return what stands above the columns and left of the rows of a grid; a series has neither."""
-    if len(sweep.axes) < 2:
-        return [], []
-    across, down = (
-        [f"{axis.name.replace('_', ' ')} {show(value)}" for value in axis.values] for axis in sweep.axes
-    )
-    return across, down
 
 
 def _tile(cell: Cell | None, is_grid: bool) -> Tile:
@@ -121,14 +111,14 @@ def write_sheet(
     recipe = SweepRecipe.of(sweep, name, note, cells).to_json() | {"versions": dict(versions())}
     text = packed(recipe)
     if is_figure(path):
-        heads = _heads(sweep)
+        across_heads, row_heads = heads(sweep)
         page = figure_page(
             _tiles(sweep, cells),
             look or Figure(),
             columns=across,
             title=sweep_title(sweep),
-            column_heads=heads[0],
-            row_heads=heads[1],
+            column_heads=across_heads,
+            row_heads=row_heads,
             texts={TEXT_KEY: text},
         )
         write_whole(path, encode_figure(path, page))
@@ -168,5 +158,5 @@ def sweep_title(sweep: Sweep) -> tuple[str, str]:
         if value != defaults.to_json()[name] and name not in {axis.name for axis in sweep.axes}:
             fixed.append(f"{name.replace('_', ' ')} {show(value)}")
     exemplar = base.inputs.get("exemplar")
-    source = [] if exemplar is None else [exemplar.name]
+    source = [] if exemplar is None or TEXTURE in names else [exemplar.name]
     return f"{find_method(base.method).title}: {varied}", ", ".join([*source, *fixed])

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from texlab.cli.commands._figures import SHEET, add_figure_options, parse_figure
@@ -29,7 +31,7 @@ from texlab.cli.terminal import interrupted, logged_quietly
 
 if TYPE_CHECKING:
     from texlab.cli.parser import Parser
-    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.sheets.sweep import Cell, Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
 
@@ -44,6 +46,8 @@ a list:                               --vary border=reflect,periodic
 variations:                           --vary seed=1:12:12
 two parameters, across and down:      --vary alpha=0.1,0.2 --vary beta=0,1
 from one texture to another:          --method mixture --vary weight=0:1:5 --input second=wall.jpg
+one preset over many textures:        --preset NAME --textures gallery:structured
+a folder, three variations of each:   --textures photos --vary seed=1:3:3
 a ready-made sweep, or an old sheet:  --sweep de-bonet-fig-11, --sweep SHEET.png
 """
 
@@ -52,6 +56,13 @@ def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.epilog = EXAMPLES
     parser.add_argument("image", nargs="?", metavar="IMAGE|gallery:NAME", help="the exemplar")
+    parser.add_argument(
+        "--textures",
+        action="append",
+        default=[],
+        metavar="FOLDER|GLOB|gallery:CLASS",
+        help="these textures across, in cells of one size, instead of one exemplar; --vary stands down",
+    )
     parser.add_argument("--method", metavar="ID", help="one of texlab methods")
     parser.add_argument(
         "--vary", action="append", default=[], metavar="NAME=FROM:TO:COUNT[:log]", help="see below"
@@ -90,12 +101,17 @@ def execute(args: argparse.Namespace) -> int:
     if not 64 <= largest <= 512:
         raise ParamError("cell", "a whole number from 64 to 512", largest)
     place, others = parse_place(args), parse_inputs(args)
-    recipe, exemplar = plan(args)
-    sources = [args.image or (recipe.exemplar.name if recipe.exemplar else "")]
-    sources += [each.place for each in others.values()] + [each.name for each in recipe.inputs.values()]
+    recipe, exemplar, textures = plan(args)
+    sources = [args.image or (recipe.exemplar.name if recipe.exemplar else ""), *textures]
+    sources += [each.place for each in others.values()]
+    sources += [each.name for each in (*recipe.inputs.values(), *recipe.textures)]
     for source in sources:
         refuse_overwriting(out, source)
-    sweep = recipe.sweep(exemplar, load_others(others, find_method(recipe.method)))
+    further, left_out = load_others(others, find_method(recipe.method)), ""
+    if textures:
+        sweep, left_out = _grid(args, recipe, textures, further)
+    else:
+        sweep = recipe.sweep(exemplar, further)
     across = sheet_columns(sweep, columns)
     if look is None:
         check_sheet(len(sweep.jobs), across, sweep.base.picture_size, largest)
@@ -110,11 +126,40 @@ def execute(args: argparse.Namespace) -> int:
             cells = run_sweep_elsewhere(sweep, on_progress=show, should_stop=interrupted, elsewhere=there)
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, columns=across, largest=largest, look=look)
     report(sweep, cells, str(out), as_json=args.json)
+    if left_out:
+        print(left_out, file=sys.stderr)
     return 0
 
 
-def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
-    """Return what is to be done and with which exemplar; what is named on the command line comes first."""
+def _grid(
+    args: argparse.Namespace, recipe: SweepRecipe, textures: list[str], further: dict[str, Input]
+) -> tuple[Sweep, str]:
+    """Return the grid over the textures that were named, and what is said of those that have no place in it."""
+    from texlab_core.errors import InputError
+    from texlab_core.sheets.texture_grid import left_out_words, read_textures
+
+    reading = parse_reading(args)
+    scale = None if args.scale is None else reading.scale
+    found, unread = read_textures(textures, scale=scale, crop=reading.crop, should_stop=interrupted)
+    if not found:
+        raise InputError(unread[0][1])
+    grid, unfit = recipe.grid(found, further)
+    return grid, left_out_words((*unread, *unfit))
+
+
+def _textures(args: argparse.Namespace) -> list[str]:
+    """Return the textures that ``--textures`` names, each once; raises ``InputError``."""
+    from texlab_core.images.sources import sources_of
+
+    found = (source for text in args.textures for source, _ in sources_of(text, Path(), "textures"))
+    return list(dict.fromkeys(found))
+
+
+def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput | None, list[str]]:
+    """Return what is to be done, with which exemplar, or over which textures.
+
+    What is named on the command line comes first.
+    """
     import dataclasses
 
     from texlab_core.engine.registry import find_method
@@ -134,7 +179,10 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
     params = params if preset is None else preset.params(params)
     params = method.params.parse(parse_settings(args.set), params)
     axes = tuple(Vary.parse(text, method.params) for text in args.vary) or (recipe.axes if recipe else ())
-    if not axes:
+    textures = _textures(args)
+    if textures and args.image is not None:
+        raise InputError("A sweep has one exemplar or --textures, not both.")
+    if not axes and not textures and not (recipe is not None and recipe.textures):
         raise InputError("A sweep varies one or two knobs: say --vary NAME=FROM:TO:COUNT or --sweep NAME.")
     base = SweepRecipe(name="sweep", method=method.id, axes=axes) if recipe is None else recipe
     changes: dict[str, Any] = {"axes": axes, "parameters": params.to_json()}
@@ -144,16 +192,18 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput]:
         changes["seed"] = parse_number("seed", args.seed, int)
     reading = parse_reading(args)
     if args.image is not None:
-        return dataclasses.replace(base, **changes), reading.read(args.image)
+        return dataclasses.replace(base, **changes, textures=()), reading.read(args.image), []
+    if textures or base.textures:
+        return dataclasses.replace(base, **changes), None, textures
     if base.exemplar is None:
-        raise InputError("A sweep needs an exemplar: name an image or gallery:NAME.")
+        raise InputError("A sweep needs an exemplar: name an image or gallery:NAME, or --textures FOLDER.")
     choice = dataclasses.replace(
         base.exemplar,
         sha256=base.exemplar.sha256 if args.scale is None and args.crop is None else "",
         scale=base.exemplar.scale if args.scale is None else reading.scale,
         crop=base.exemplar.crop if args.crop is None else reading.crop,
     )
-    return dataclasses.replace(base, **changes), choice.load()
+    return dataclasses.replace(base, **changes), choice.load(), []
 
 
 def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) -> None:
@@ -168,6 +218,7 @@ def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) ->
 
     base = sweep.base
     exemplar: Any = base.inputs["exemplar"]
+    textures = getattr(sweep, "textures", ())
     answer = {
         "method": base.method,
         "parameters": base.params.to_json(),
@@ -175,7 +226,8 @@ def report(sweep: Sweep, cells: tuple[Cell, ...], out: str, *, as_json: bool) ->
         "seed": base.seed,
         "vary": [{"name": axis.name, "values": list(axis.values)} for axis in sweep.axes],
         "out": out,
-        "exemplar": {"name": exemplar.name, "sha256": exemplar.sha256},
+        "exemplar": None if textures else {"name": exemplar.name, "sha256": exemplar.sha256},
+        "textures": [{"name": each.name, "sha256": each.sha256} for each in textures],
         "cells": [
             {
                 "values": dict(cell.values),

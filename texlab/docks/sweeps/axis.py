@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.docks.sweeps.textures import TextureChoice
 from texlab.form.scales import box_step, decimals
 from texlab.style.numbers import parse_list
 from texlab.style.text_size import grow_with_text
@@ -25,11 +26,12 @@ from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
-from texlab_core.sheets.sweep import MAX_CELLS, Vary, check_knob, spread
+from texlab_core.sheets.sweep import MAX_CELLS, TEXTURE, Vary, check_knob, spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab.state.sweeps import Textures
     from texlab_core.engine.params import Field, Params
 
 Spacing = Literal["even", "log", "list"]
@@ -53,6 +55,7 @@ class AxisChoice:
     count: int
     listed: str
     choices: tuple[Any, ...]
+    textures: tuple[str, tuple[str, ...]] = ("", ())
 
 
 class AxisEditor(QWidget):
@@ -66,11 +69,21 @@ class AxisEditor(QWidget):
         "Across" or "Down".
     optional
         Whether "nothing" may be chosen.
+    has_textures
+        Whether many textures may stand in the place of a knob.
     """
 
     changed = Signal()
 
-    def __init__(self, name: str, title: str, *, optional: bool, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        title: str,
+        *,
+        optional: bool,
+        has_textures: bool = False,
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         self.setObjectName(name)
         self._title = title
@@ -95,6 +108,7 @@ class AxisEditor(QWidget):
         self._choices = QWidget()
         self._flow = FlowLayout(self._choices)
         self._flow.setContentsMargins(0, 0, 0, 0)
+        self.texture_choice = TextureChoice(name, title) if has_textures else None
         self._arrange()
         self._name_controls()
         self.knob.activated.connect(lambda _: self._knob_chosen())
@@ -102,6 +116,8 @@ class AxisEditor(QWidget):
         for box in (self.first, self.last, self.count):
             box.valueChanged.connect(lambda _: self.changed.emit())
         self.listed.textEdited.connect(lambda _: self.changed.emit())
+        if self.texture_choice is not None:
+            self.texture_choice.changed.connect(self.changed)
         self.setFocusProxy(self.knob)
 
     def _arrange(self) -> None:
@@ -122,8 +138,9 @@ class AxisEditor(QWidget):
             box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         values = QVBoxLayout()
         values.setContentsMargins(0, 0, 0, 0)
-        for widget in (self._range, self.listed, self._choices):
-            values.addWidget(widget)
+        for widget in (self._range, self.listed, self._choices, self.texture_choice):
+            if widget is not None:
+                values.addWidget(widget)
         head = QHBoxLayout()
         head.setContentsMargins(0, 0, 0, 0)
         head.addWidget(label)
@@ -164,6 +181,10 @@ class AxisEditor(QWidget):
                 self.knob.addItem(field.label, field.name)
                 tip = field.knob.help
                 self.knob.setItemData(self.knob.count() - 1, tip_text(tip), Qt.ItemDataRole.ToolTipRole)
+            if self.texture_choice is not None:
+                self.knob.addItem("texture", TEXTURE)
+                tip = "The same parameters on many textures: a class of the gallery, a folder, or files"
+                self.knob.setItemData(self.knob.count() - 1, tip_text(tip), Qt.ItemDataRole.ToolTipRole)
         if choice is not None:
             self._restore(choice)
             return
@@ -180,6 +201,18 @@ class AxisEditor(QWidget):
     def field(self) -> Field | None:
         """The knob that is varied."""
         return self._fields.get(self.knob.currentData() or "")
+
+    def show_opened(self, paths: tuple[str, ...]) -> None:
+        """Offer the open files as textures."""
+        if self.texture_choice is not None:
+            self.texture_choice.show_opened(paths)
+
+    @property
+    def textures(self) -> Textures | None:
+        """The textures that run along this axis, None for a knob; raises ``ParamError`` when there are none."""
+        if self.texture_choice is None or self.knob.currentData() != TEXTURE:
+            return None
+        return self.texture_choice.textures()
 
     def vary(self) -> Vary | None:
         """Return the axis, or None when nothing is varied.
@@ -236,6 +269,7 @@ class AxisEditor(QWidget):
             self.count.value(),
             self.listed.text(),
             tuple(box.property("value") for box in self.boxes if box.isChecked()),
+            ("", ()) if self.texture_choice is None else self.texture_choice.choice,
         )
 
     def _restore(self, choice: AxisChoice) -> None:
@@ -243,6 +277,8 @@ class AxisEditor(QWidget):
         self._set_numbers(choice.spacing, choice.first, choice.last, choice.count)
         self.listed.setText(choice.listed)
         self._check_boxes(choice.choices)
+        if self.texture_choice is not None and choice.textures[0]:
+            self.texture_choice.choose(*choice.textures)
         self._show_rows()
 
     # Reactions.
@@ -321,6 +357,8 @@ class AxisEditor(QWidget):
         self._range.setVisible(is_number and not is_list)
         self.listed.setVisible(is_number and is_list)
         self._choices.setVisible(field is not None and not is_number)
+        if self.texture_choice is not None:
+            self.texture_choice.setVisible(self.knob.currentData() == TEXTURE)
 
 
 def usual_range(field: Field) -> tuple[float, float, Spacing]:

@@ -31,7 +31,7 @@ MOVES = (
     Qt.Key.Key_Home,
     Qt.Key.Key_End,
 )
-OPENS = (Qt.Key.Key_N, Qt.Key.Key_K)
+OPENS = (Qt.Key.Key_N, Qt.Key.Key_K, Qt.Key.Key_C)
 TAKES = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
 
 
@@ -41,12 +41,14 @@ class SheetCanvas(OwnKeys, CellPlaces):
     taken = Signal(int)
     opened = Signal(int)
     kept_turned = Signal(int)
+    compared = Signal()
     zoom_wanted = Signal(int)
 
     def __init__(self, area: QScrollArea, empty: str) -> None:
         super().__init__(area)
         self._empty = empty
         self.theme: Theme = DARK
+        self.taken_words = "parameters"
         self._over: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
@@ -191,7 +193,7 @@ class SheetCanvas(OwnKeys, CellPlaces):
         menu.setObjectName("sweeps-cell-menu")
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         for text, signal in (
-            ("&Take the parameters\tReturn", self.taken),
+            (f"&Take the {self.taken_words}\tReturn", self.taken),
             ("Open as a &new column\tN", self.opened),
             ("&Let go\tK" if index in self.kept else "&Keep\tK", self.kept_turned),
         ):
@@ -222,7 +224,7 @@ class SheetCanvas(OwnKeys, CellPlaces):
         return key in zooms or (bool(self.settings) and (key in MOVES or key in TAKES or key in OPENS))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Move with the arrows, Home and End; take with Return or Space, N opens, K keeps, + and - zoom."""
+        """Move with arrows, Home, End; Return or Space takes; N, K, C: open, keep, compare; + and - zoom."""
         if not self.wants_key(event):
             super().keyPressEvent(event)
             return
@@ -245,6 +247,8 @@ class SheetCanvas(OwnKeys, CellPlaces):
             self._tell(self.opened, self.current)
         elif key == Qt.Key.Key_K:
             self._tell(self.kept_turned, self.current)
+        elif key == Qt.Key.Key_C:
+            self.compared.emit()
         else:
             self.zoom_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
 
@@ -264,7 +268,7 @@ class SheetCanvas(OwnKeys, CellPlaces):
         if shown.picture is None:
             return f"{self.settings[index]}: {shown.cell.error}"
         star = "Kept: " if index in self.kept else ""
-        return f"{star}{shown.cell.label}. Click to take the parameters."
+        return f"{star}{shown.cell.label}. Click to take the {self.taken_words}."
 
     def _point(self, index: int | None) -> None:
         if index == self._over:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
+    QApplication,
     QFileDialog,
     QHBoxLayout,
     QProgressBar,
@@ -17,29 +18,29 @@ from PySide6.QtWidgets import (
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
+from texlab.docks.sweeps.pair_view import PairView
 from texlab.docks.sweeps.panel import SweepPanel
 from texlab.docks.sweeps.places import LARGEST, SMALLEST, USUAL
 from texlab.docks.sweeps.sheet_view import ContactSheetView
+from texlab.docks.sweeps.words import arranged, headings, setting, sortings, status_text
 from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
-from texlab.style.numbers import duration, remaining
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
-from texlab_core.measures.registry import measures
-from texlab_core.sheets.sweep import show
+from texlab_core.sheets.sweep import TEXTURE
 from texlab_core.sheets.sweep_recipes import bundled_sweeps
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from PySide6.QtGui import QKeyEvent
 
     from texlab.state.scene import ColumnScene, Scene
-    from texlab.state.sweeps import ShownCell, SweepScene
-    from texlab_core.sheets.sweep import Cell, Sweep
+    from texlab.state.sweeps import ShownCell
+    from texlab_core.sheets.sweep import Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
 
 ZOOM_STEP = 16
@@ -62,7 +63,8 @@ class SweepsDock(FramedDock):
         # What is painted at present.
         self.shown = NO_SWEEP
         self.cells: dict[int, ShownCell] = {}
-        self.kept: set[int] = set()
+        # In the order of keeping.
+        self.kept: list[int] = []
         self._build_line()
         self.panel = SweepPanel(self.name)
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
@@ -70,6 +72,8 @@ class SweepsDock(FramedDock):
         self.sheet.opened.connect(self._open)
         self.sheet.kept.connect(self._keep)
         self.sheet.zoom_wanted.connect(self._zoom)
+        self.sheet.compared.connect(self.compare)
+        self.pair: PairView | None = None
         self.heading = Label("")
         self.heading.setObjectName("sweeps-heading")
         self.heading.setProperty("role", "muted")
@@ -83,7 +87,7 @@ class SweepsDock(FramedDock):
         policy = self.progress.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.progress.setSizePolicy(policy)
-        right = QVBoxLayout()
+        self._right = right = QVBoxLayout()
         right.setSpacing(2)
         right.addWidget(self.heading)
         right.addWidget(self.progress)
@@ -145,8 +149,17 @@ class SweepsDock(FramedDock):
             "only-kept", "Kept", "Show only the cells that are kept (K)", self._show_only_kept
         )
         replace_items(self.sorting, AS_VARIED)
+        tip = "The two cells that were kept last, side by side, with flicker and difference (C)"
+        self.compare_button = self.add_button("compare", "Compare", tip, self.compare)
         self.status = Label("")
         self.add_control(self.status, "status", "State of the sweep", "How far the sweep is")
+
+    def take_settings(self, wanted: Mapping[str, Any]) -> tuple[str, ...]:
+        """Set controls by name; ``ready-made`` is the name of a sweep, which may be offered later."""
+        others = {name: value for name, value in wanted.items() if name != "ready-made"}
+        if isinstance(name := wanted.get("ready-made"), str):
+            self.panel.choose_ready(name)
+        return super().take_settings(others)
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to the sheet, or show what is varied again."""
@@ -158,12 +171,14 @@ class SweepsDock(FramedDock):
     def show_scene(self, scene: Scene) -> None:
         """Offer the chosen column's knobs and show how far the sweep is."""
         self._column = column = scene.selected
+        self.panel.across.show_opened(scene.opened)
         if column is not None:
             self.panel.show_method(find_method(column.method))
             self.show_body()
         if scene.sweep is not self.shown:
             before, self.shown = self.shown, scene.sweep
-            self._show_sweep(is_new=before.number != scene.sweep.number)
+            # The sweep over many textures comes when they have been read.
+            self._show_sweep(is_new=before.sweep is not scene.sweep.sweep)
         self._mark(scene)
         self._show_state()
 
@@ -201,9 +216,12 @@ class SweepsDock(FramedDock):
                 self.zoom.setValue(self.sheet.fitting_side(count, columns, max(size), down))
             settings = [setting(sweep, index) for index in range(count)]
             self.kept.clear()
+            self._leave_pair()
             self.sheet.show_grid(settings, columns, size, heads)
-            self.heading.setText(" · ".join(sweep_title(sweep)))
+            self.heading.setText(" · ".join((*sweep_title(sweep), *filter(None, (shown.left_out,)))))
             set_tip(self.heading, self.heading.text())
+            is_texture = sweep.axes[0].name == TEXTURE
+            self.sheet.show_words("texture and parameters" if is_texture else "parameters")
         self.cells = {each.cell.index: each for each in shown.cells}
         replace_items(self.sorting, AS_VARIED + sortings(each.cell for each in shown.cells))
         self.sheet.show_cells(self.cells)
@@ -217,6 +235,7 @@ class SweepsDock(FramedDock):
         self.progress.setVisible(self.running)
         self.save_button.setEnabled(bool(self.cells))
         self.sorting.setEnabled(self.sorting.count() > 1)
+        self.compare_button.setEnabled(len(self.kept) > 1 and not self.compares)
         self.only_kept.setEnabled(bool(self.kept) or self.only_kept.isChecked())
 
     # What the user does.
@@ -257,10 +276,49 @@ class SweepsDock(FramedDock):
         self._show_state()
 
     def _keep(self, index: int) -> None:
-        self.kept ^= {index}
+        if index in self.kept:
+            self.kept.remove(index)
+        else:
+            self.kept.append(index)
         self.sheet.show_kept(self.kept)
         self._sort()
         self._show_state()
+
+    def compare(self) -> None:
+        """Show the two cells that were kept last side by side."""
+        if len(self.kept) < 2:
+            return
+        if self.pair is None:
+            self.pair = PairView(self.name, self._once, self.body)
+            self.pair.closed.connect(self._leave_pair)
+            self.pair.set_theme(self.theme)
+            self._right.addWidget(self.pair, 1)
+        a, b = sorted(self.kept[-2:])
+        has_focus = self.sheet.canvas.hasFocus() or self.compare_button.hasFocus()
+        self.sheet.hide()
+        self.pair.show()
+        self.pair.show_pair(self.cells[a], self.cells[b])
+        if has_focus:
+            self.pair.back.setFocus()
+        self._show_state()
+
+    @property
+    def compares(self) -> bool:
+        """Whether two cells are shown in the place of the sheet."""
+        return self.pair is not None and not self.pair.isHidden()
+
+    def _leave_pair(self) -> None:
+        if self.pair is None or not self.compares:
+            return
+        has_focus = self.pair.isAncestorOf(QApplication.focusWidget() or self)
+        self.sheet.show()
+        self.pair.hide()
+        if has_focus:
+            self.sheet.canvas.setFocus()
+        self._show_state()
+
+    def _once(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
+        self.intention.emit(AskOnce("difference", lambda should_stop: work(), done))
 
     def _open(self, index: int) -> None:
         self.intention.emit(CellAsColumn(self.cells[index].cell, self.shown.column_id))
@@ -275,12 +333,15 @@ class SweepsDock(FramedDock):
         found = None
         if sweep is not None and column is not None and sweep.base.method == column.method:
             is_seed = any(axis.name == "seed" for axis in sweep.axes)
+            is_texture, own = sweep.axes[0].name == TEXTURE, scene.exemplar
             seed = scene.seed if column.seed is None else column.seed
             found = next(
                 (
                     index
                     for index, job in enumerate(sweep.jobs)
-                    if job.params == column.params and (not is_seed or job.seed == seed)
+                    if job.params == column.params
+                    and (not is_seed or job.seed == seed)
+                    and (not is_texture or (own is not None and job.inputs["exemplar"].sha256 == own.sha256))
                 ),
                 None,
             )
@@ -292,6 +353,8 @@ class SweepsDock(FramedDock):
             return
         base = self.sweep.base
         exemplar = base.inputs["exemplar"].name.removeprefix("gallery:")
+        if self.sweep.axes[0].name == TEXTURE:
+            exemplar = "textures"
         varied = "-".join(axis.name for axis in self.sweep.axes)
         dialog = QFileDialog(self, "Save sheet")
         dialog.setObjectName("sweeps-save-dialog")
@@ -317,65 +380,3 @@ class SweepsDock(FramedDock):
             self.intention.emit(Tell(f"Saved {path} with its sweep."))
 
         self.intention.emit(AskOnce("sheet", write, done))
-
-
-def status_text(shown: SweepScene) -> str:
-    """Return how far a sweep is, in words."""
-    total = 0 if shown.sweep is None else len(shown.sweep.jobs)
-    failed = sum(each.picture is None for each in shown.cells)
-    counts = f"{len(shown.cells)} of {total}{f' · {failed} failed' if failed else ''}"
-    if shown.status == "finished":
-        return f"{counts} · {duration(shown.seconds)}"
-    if shown.status == "stopped":
-        return f"{counts} · stopped"
-    if shown.running and shown.fraction > 0.05:
-        left = shown.seconds * (1 - shown.fraction) / shown.fraction
-        return f"{counts} · about {remaining(left)} left"
-    return counts
-
-
-def sortings(cells: Iterable[Cell]) -> list[tuple[str, Any]]:
-    """Return (text, measure) for every measure by which these cells can be sorted."""
-    known = {id for cell in cells for id in cell.measures}
-    return [(f"by {each.title}", each.id) for each in measures().values() if each.id in known]
-
-
-def arranged(
-    total: int, cells: Mapping[int, Cell], by: str | None, kept: Collection[int] | None
-) -> list[int] | None:
-    """Return the cells that are shown in their order; None for all of them in their places.
-
-    Parameters
-    ----------
-    total
-        Number of cells, finished or not.
-    cells
-        Those that have finished, by index.
-    by
-        Id of a measure: the best value comes first, or the largest where none is better; cells without it, last.
-    kept
-        Only these; None for all.
-    """
-    if by is None and kept is None:
-        return None
-    shown = [index for index in range(total) if kept is None or index in kept]
-    if by is None:
-        return shown
-    sign = 1 if measures()[by].better == "lower" else -1
-    values = {index: cell.measures[by] for index, cell in cells.items() if by in cell.measures}
-    return sorted(shown, key=lambda index: (index not in values, sign * values.get(index, 0.0)))
-
-
-def headings(sweep: Sweep) -> tuple[list[str], list[str]] | None:
-    """Return the headings of columns and rows; None for a series, whose cells have captions."""
-    if len(sweep.axes) < 2:
-        return None
-    across, down = (
-        [f"{axis.name.replace('_', ' ')} {show(value)}" for value in axis.values] for axis in sweep.axes
-    )
-    return across, down
-
-
-def setting(sweep: Sweep, index: int) -> str:
-    """Return what is varied in a cell, in words."""
-    return ", ".join(f"{name.replace('_', ' ')} {show(value)}" for name, value in sweep.values(index).items())

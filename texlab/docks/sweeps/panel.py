@@ -42,12 +42,14 @@ class SweepPanel(QScrollArea):
         self._choices: dict[str, tuple[AxisChoice, AxisChoice]] = {}
         self._recipes: tuple[SweepRecipe, ...] = ()
         self._recipe: SweepRecipe | None = None
+        # Name of a ready-made sweep that is to be chosen as soon as it is offered.
+        self._wanted = ""
         self.ready_box, self.base_box, self.side_box = QComboBox(), QComboBox(), QComboBox()
         for side in SIDES:
             self.side_box.addItem(f"{side} x {side}", side)
         self.side_box.addItem("as the columns", None)
         self.side_box.setCurrentIndex(SIDES.index(USUAL_SIDE))
-        self.across = AxisEditor(f"{name}-across", "Across", optional=False)
+        self.across = AxisEditor(f"{name}-across", "Across", optional=False, has_textures=True)
         self.down = AxisEditor(f"{name}-down", "Down", optional=True)
         self.error = Label("")
         self.error.setObjectName(f"{name}-error")
@@ -72,7 +74,7 @@ class SweepPanel(QScrollArea):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         grow_with_text(self, WIDTH, self.setFixedWidth)
         self.setWidget(inside)
-        self.ready_box.activated.connect(lambda _: self._choose_sweep())
+        self.ready_box.activated.connect(lambda _: self._sweep_chosen())
         for axis in (self.across, self.down):
             axis.changed.connect(self._axis_changed)
 
@@ -115,6 +117,20 @@ class SweepPanel(QScrollArea):
             self.ready_box.setItemData(place + 1, tip_text(recipe.note), Qt.ItemDataRole.ToolTipRole)
         self.ready_box.setEnabled(bool(recipes))
         self._offer_base()
+        if self._wanted:
+            self.choose_ready(self._wanted)
+
+    def choose_ready(self, name: str) -> None:
+        """Choose a ready-made sweep by its name, now or when it is offered."""
+        names = [recipe.name for recipe in self._recipes]
+        self._wanted = "" if name in names else name
+        if name in names:
+            self.ready_box.setCurrentIndex(names.index(name) + 1)
+            self._choose_sweep()
+
+    def _sweep_chosen(self) -> None:
+        self._wanted = ""
+        self._choose_sweep()
 
     @property
     def chosen_sweep(self) -> SweepRecipe | None:
@@ -125,7 +141,8 @@ class SweepPanel(QScrollArea):
     def plan(self) -> SweepPlan:
         """Return what was asked for; raises ``InputError`` when it makes no sense."""
         axes = tuple(axis for axis in (self.across.vary(), self.down.vary()) if axis is not None)
-        plan = SweepPlan(axes, self.side_box.currentData(), self.base_box.currentData())
+        shared = self.side_box.currentData(), self.base_box.currentData()
+        plan = SweepPlan(axes, *shared, textures=self.across.textures)
         recipe = self.chosen_sweep
         return plan if recipe is None else dataclasses.replace(plan, name=recipe.name, note=recipe.note)
 

@@ -25,12 +25,14 @@ class ContactSheetView(QScrollArea):
 
     ``taken(index)``: a finished cell was clicked, or chosen with Return. ``opened(index)``: it is wanted as a
     column (N, the middle button, the menu). ``kept(index)``: it is to be kept, or let go (K, the menu).
+    ``compared()``: the cells that are kept are to be seen side by side (C).
     ``zoom_wanted(steps)``: the wheel was turned with Ctrl held, or + or - was pressed.
     """
 
     taken = Signal(int)
     opened = Signal(int)
     kept = Signal(int)
+    compared = Signal()
     zoom_wanted = Signal(int)
 
     def __init__(self, name: str, empty: str, parent: QWidget | None = None) -> None:
@@ -43,6 +45,7 @@ class ContactSheetView(QScrollArea):
             (self.canvas.taken, self.taken),
             (self.canvas.opened, self.opened),
             (self.canvas.kept_turned, self.kept),
+            (self.canvas.compared, self.compared),
             (self.canvas.zoom_wanted, self.zoom_wanted),
         ):
             told.connect(tells)
@@ -122,6 +125,10 @@ class ContactSheetView(QScrollArea):
     def set_side(self, side: int) -> None:
         """Show the cells at another size: the longest side of a picture in pixels."""
         self.canvas.set_side(side)
+
+    def show_words(self, taken: str) -> None:
+        """Say what a click takes: "parameters"."""
+        self.canvas.taken_words = taken
 
     def mark(self, index: int | None) -> None:
         """Mark the cell that has the parameters of the column."""
