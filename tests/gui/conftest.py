@@ -107,6 +107,38 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
 
 
 @pytest.fixture
+def open_new(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
+    """Return a function that opens a window as it is at the first start, of a given size.
+
+    Without a source nothing is kept from before, and nobody waits for the methods of the first sight.
+    """
+    opened: list[MainWindow] = []
+
+    def make(source: str | None, columns: list[tuple[str, Any]] | None, size: tuple[int, int]) -> Explorer:
+        settings, themes = Settings(), ThemeSource("light")
+        window = texlab_app.build(settings, themes)
+        window.resize(*size)
+        with qtbot.waitActive(window):
+            window.show()
+            window.activateWindow()
+        explorer = texlab_app.complete(window, settings, themes)
+        opened.append(window)
+        if source is None:
+            explorer.start(None)
+            qtbot.waitUntil(lambda: explorer.session.state.sample is not None)
+            return explorer
+        explorer.saved = {"seed": 5, "size": [48, 48]}
+        explorer.start(source, columns=columns)
+        wait_idle(qtbot, explorer)
+        return explorer
+
+    yield make
+    for window in opened:
+        window.close()
+        window.deleteLater()
+
+
+@pytest.fixture
 def explorer(open_window: Callable[..., Explorer], texture: Path) -> Explorer:
     """A window with two finished Heeger-Bergen columns of 48 x 48."""
     return open_window(str(texture), [hb(), hb(iterations=1)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from dock_scenes import feed, scene_of
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QWidget
 
-from tests.gui.conftest import hb, ids, result_image, wait_idle
+from tests.gui.conftest import ids, result_image, wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.lessons.dock import LessonsDock
 from texlab.runs import column_run
@@ -19,18 +20,20 @@ from texlab.runs.column_run import MeasureRun
 from texlab.state.intentions import GoToStep, LeaveLesson, NewLesson, OpenLesson, SaveStep
 from texlab.state.lesson_scene import LessonScene
 from texlab.storage.paths import config_dir
+from texlab.window import teacher
 from texlab_core.documents.lessons import read_lesson
+from texlab_core.engine.inputs import Crop
 from texlab_core.engine.run import run
 from texlab_core.lessons.running import jobs
 from texlab_core.lessons.shelf import bundled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from PySide6.QtWidgets import QTreeWidgetItem
 
     from texlab.app.explorer import Explorer
+    from texlab_core.documents.lessons import Lesson, LessonStep
 
 SMALL: dict[str, Any] = {
     "format": "texlab-lesson",
@@ -218,21 +221,46 @@ def test_a_step_with_the_same_methods_keeps_every_widget(
     assert made == []
 
 
-def test_the_bundled_lesson_is_given_with_page_down_alone(
-    qtbot: Any, open_window: Callable[..., Explorer], texture: Path
+def small_pictures(lesson: Lesson) -> Lesson:
+    """The lesson with all that it says and sets, on 32 pixels a side."""
+    crop, size = Crop(0, 0, 32, 32), (32, 32)
+
+    def reduced(step: LessonStep) -> LessonStep:
+        taken = None if step.exemplar is None else dataclasses.replace(step.exemplar, crop=crop)
+        columns = tuple(
+            dataclasses.replace(
+                each,
+                size=None if each.size is None else tuple(16 for _ in each.size),
+                inputs={name: dataclasses.replace(other, crop=crop) for name, other in each.inputs.items()},
+            )
+            for each in step.columns
+        )
+        return dataclasses.replace(step, exemplar=taken, columns=columns, size=size, marks=())
+
+    return dataclasses.replace(lesson, steps=tuple(map(reduced, lesson.steps)))
+
+
+def press(qtbot: Any, window: Any, key: Qt.Key, modifier: Any = Qt.KeyboardModifier.NoModifier) -> None:
+    """Press a key where the keyboard is."""
+    qtbot.keyClick(window.focusWidget() or window, key, modifier)
+
+
+def test_from_the_first_start_the_bundled_lesson_is_given_with_keys_alone(
+    qtbot: Any, qapp: Any, open_new: Callable[..., Explorer], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    explorer = open_window(str(texture), [hb()])
+    usual = teacher.read
+    monkeypatch.setattr(teacher, "read", lambda *args: small_pictures(usual(*args)))
+    # Nothing is kept from before, and nobody waits for the four methods of the first sight.
+    explorer = open_new(None, None, (1280, 800))
     window, session = explorer.window, explorer.session
     mine = session.state
-    qtbot.keyClick(window, Qt.Key.Key_L, Qt.KeyboardModifier.ControlModifier)
+    press(qtbot, window, Qt.Key.Key_L, Qt.KeyboardModifier.ControlModifier)
     dock = window.docks["lessons"].widget()
-    qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0)
-    item = item_of(dock, "heeger-bergen")
-    dock.list.scrollToItem(item)
-    where = dock.list.visualItemRect(item)
-    qtbot.mouseClick(
-        dock.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(where.left() + 5, where.center().y())
-    )
+    qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0 and window.focusWidget() is dock.list)
+    wanted = item_of(dock, "heeger-bergen")
+    while dock.list.currentItem() is not wanted:
+        press(qtbot, window, Qt.Key.Key_Down)
+    press(qtbot, window, Qt.Key.Key_Return)
     steps = bundled()["heeger-bergen"].steps
     qtbot.waitUntil(lambda: explorer.teacher.scene.lesson is not None)
     for place, step in enumerate(steps):
@@ -244,14 +272,28 @@ def test_the_bundled_lesson_is_given_with_page_down_alone(
         assert all(each.result is not None and each.result.job.seed == step.seed for each in columns)
         assert step.tab is not None
         assert window.front_dock() == step.tab.name
-        qtbot.keyClick(window.focusWidget() or window, Qt.Key.Key_PageDown)
+        press(qtbot, window, Qt.Key.Key_PageDown)
     # The last step stays; back again with Page Up.
     assert explorer.teacher.scene.place == len(steps) - 1
-    qtbot.keyClick(window.focusWidget() or window, Qt.Key.Key_PageUp)
+    press(qtbot, window, Qt.Key.Key_PageUp)
     assert explorer.teacher.scene.place == len(steps) - 2
-    explorer.carrier.carry_out(LeaveLesson())
-    wait_idle(qtbot, explorer)
+    press(qtbot, window, Qt.Key.Key_L, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert explorer.teacher.scene.lesson is None
     assert session.state is mine
+
+
+def test_one_click_gives_a_lesson(qtbot: Any, explorer: Explorer, small: str) -> None:
+    explorer.window.raise_dock("lessons")
+    dock = explorer.window.docks["lessons"].widget()
+    qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0)
+    item = item_of(dock, small)
+    dock.list.scrollToItem(item)
+    where = dock.list.visualItemRect(item)
+    qtbot.mouseClick(
+        dock.list.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(where.left() + 5, where.center().y())
+    )
+    qtbot.waitUntil(lambda: explorer.teacher.scene.name == small)
+    wait_idle(qtbot, explorer)
 
 
 def test_page_down_means_nothing_without_a_lesson(qtbot: Any, explorer: Explorer) -> None:

@@ -133,35 +133,6 @@ def test_four_first_results_cover_much_of_the_window(
     assert not explorer.window.strip.is_open
 
 
-@pytest.fixture
-def open_new(qtbot: Any, qapp: Any) -> Any:
-    """A window as it is at the first start, of a given size."""
-    from texlab.app import start
-    from texlab.storage.settings import Settings
-    from texlab.style.theme import ThemeSource
-
-    opened = []
-
-    def make(source: str, columns: list[Any], size: tuple[int, int]) -> Explorer:
-        settings, themes = Settings(), ThemeSource("light")
-        window = start.build(settings, themes)
-        window.resize(*size)
-        with qtbot.waitActive(window):
-            window.show()
-            window.activateWindow()
-        explorer = start.complete(window, settings, themes)
-        opened.append(window)
-        explorer.saved = {"seed": 5, "size": [48, 48]}
-        explorer.start(source, columns=columns)
-        wait_idle(qtbot, explorer)
-        return explorer
-
-    yield make
-    for window in opened:
-        window.close()
-        window.deleteLater()
-
-
 def test_a_click_on_a_name_opens_the_panels_and_another_closes_them(
     qtbot: Any, open_new: Callable[..., Explorer], texture: Path
 ) -> None:

@@ -119,6 +119,8 @@ class LessonsDock(FramedDock):
         layout = QVBoxLayout(self.body)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(splitter)
+        # Who comes here by a key goes on with the arrow keys and Enter.
+        self.setFocusProxy(self.list)
         self.words.show_step(None)
         self._drawing.setVisible(False)
         self._show_parts()
@@ -249,6 +251,8 @@ class LessonsDock(FramedDock):
                     self._lesson.own,
                 ):
                     self.list.setCurrentItem(item)
+        if self.list.currentItem() is None and self.list.topLevelItemCount():
+            self.list.setCurrentItem(self.list.topLevelItem(0).child(0))
 
     # What the user does.
 
