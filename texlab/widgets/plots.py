@@ -6,20 +6,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.style.numbers import even_ticks, log_ticks
 from texlab.style.text_size import text_scale
 from texlab.style.theme import configure_pyqtgraph
+from texlab.widgets.label_places import Label, place_labels
 from texlab.widgets.plain import escaped, set_tip
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-    from PySide6.QtCore import QObject, QSizeF
+    from PySide6.QtCore import QObject
     from PySide6.QtGui import QFontMetrics, QPaintEvent, QResizeEvent
 
     from texlab.style.theme import Theme
@@ -214,20 +215,22 @@ class Plot(QWidget):
         self.axes["left"].setTicks([ticks])
 
     def _keep_texts_inside(self, *_: object) -> None:
-        """Write words beside their places: inside of the axes, and not over other words where that can be."""
+        """Write words beside their places: inside of the axes, and not over other words."""
         (left, right), (low, high) = self.view.viewRange()
-        room = QRectF(0, 0, max(self.view.width(), 1.0), max(self.view.height(), 1.0))
-        taken: list[QRectF] = []
+        room = max(self.view.width(), 1.0), max(self.view.height(), 1.0)
+        labels = []
         for item, _role, wanted in self._texts:
             size = item.textItem.boundingRect().size()
-            x = (item.pos().x() - left) / max(right - left, 1e-300) * room.width()
-            y = (high - item.pos().y()) / max(high - low, 1e-300) * room.height()
-            places = [_beside(QPointF(x, y), size, anchor, room) for anchor in _anchors(wanted)]
-            free = (each for each in places if not any(each.intersects(other) for other in taken))
-            place = next(free, places[0])
-            taken.append(place)
-            inside = QPointF(x, y) - place.topLeft()
-            item.setAnchor((inside.x() / max(size.width(), 1.0), inside.y() / max(size.height(), 1.0)))
+            x = (item.pos().x() - left) / max(right - left, 1e-300) * room[0]
+            y = (high - item.pos().y()) / max(high - low, 1e-300) * room[1]
+            labels.append(Label(x, y, size.width(), size.height(), wanted))
+        places = place_labels(labels, room)
+        for (item, _role, _wanted), label, place in zip(self._texts, labels, places, strict=True):
+            # What would lie over other words is left out until there is room.
+            item.setVisible(place is not None)
+            if place is not None:
+                inside = label.x - place[0], label.y - place[1]
+                item.setAnchor((inside[0] / max(label.width, 1.0), inside[1] / max(label.height, 1.0)))
 
     def fit(self, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
         """Show a range, or everything where it is left out."""
@@ -301,19 +304,6 @@ class Plot(QWidget):
             self.fit()
         else:
             self.clicked.emit()
-
-
-def _anchors(wanted: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return where in a text its place may be, the wanted one first, then what is next to it."""
-    across = (wanted[0], 1 - wanted[0])
-    return [wanted, *((x, y) for y in (wanted[1], 1 - wanted[1], -1.0, 2.0, -2.0, 3.0) for x in across)]
-
-
-def _beside(at: QPointF, size: QSizeF, anchor: tuple[float, float], room: QRectF) -> QRectF:
-    """Return the place of a text at a point, moved into the room as far as that is large enough."""
-    left = min(max(at.x() - anchor[0] * size.width(), 0.0), max(room.width() - size.width(), 0.0))
-    top = min(max(at.y() - anchor[1] * size.height(), 0.0), max(room.height() - size.height(), 0.0))
-    return QRectF(QPointF(left, top), size)
 
 
 def _ticks_apart(limits: list[float], room: float, metrics: QFontMetrics) -> list[tuple[float, str]]:

@@ -251,8 +251,10 @@ class LessonsDock(FramedDock):
                     self._lesson.own,
                 ):
                     self.list.setCurrentItem(item)
-        if self.list.currentItem() is None and self.list.topLevelItemCount():
-            self.list.setCurrentItem(self.list.topLevelItem(0).child(0))
+        top = self.list.topLevelItem(0)
+        first = None if top is None else top.child(0)
+        if self.list.currentItem() is None and first is not None:
+            self.list.setCurrentItem(first)
 
     # What the user does.
 

@@ -171,6 +171,7 @@ class TuningDock(FramedDock):
         self._point(None)
         self.plot.clear()
         self.points = []
+        names: list[tuple[float, float, str, Role]] = []
         for place, group in enumerate(groups_of(scene)):
             role, line = SERIES[place % len(SERIES)] if group.title != "search" else ("muted", "dot")
             there = placed(group.cells, x, y)
@@ -182,7 +183,10 @@ class TuningDock(FramedDock):
                     self.plot.curve([each.x for each in joined], [each.y for each in joined], role, line=line)
             if found:
                 self.plot.points([each.x for each in found], [each.y for each in found], role)
-                self.plot.text(found[-1].x, found[-1].y, group.title, role)
+                names.append((found[-1].x, found[-1].y, group.title, role))
+        # Where there is no room for all of them, those of the runs on top are seen.
+        for each in reversed(names):
+            self.plot.text(*each)
         self.plot.set_labels(find_measure(x).title, find_measure(y).title)
         self.plot.fit()
         self._draw_lines(x, y)
