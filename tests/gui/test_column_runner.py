@@ -10,7 +10,7 @@ import pytest
 
 from tests.stub_method import StubParams, analyses, exemplar, stub  # noqa: F401
 from texlab.runs.column_run import BROKEN, Drafted, Finished, Measured, Progress, Waits
-from texlab.runs.column_runner import ColumnRunner, Shared
+from texlab.runs.column_runner import MEASURING_SHARE, OVERDUE_S, ColumnRunner, Shared
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.sweep_run import SweepRun, sweep_of
 from texlab.runs.worker import Worker
@@ -119,10 +119,39 @@ def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
     # The newer picture is shown with the numbers of the one before, until it has its own.
     assert (runner.scene.result, dict(runner.scene.measures)) == (second.result, {"d": 1.0})
     assert len(runner._shared.points.points) == 1
+    runner._measure_next()
     runner._measures_came(Measured({"d": 2.0}, (96, 128)))
     points = runner._shared.points.points
     assert [each.cell.measures for each in points] == [{"d": 1.0}, {"d": 2.0}]
     assert [each.cell.job.key for each in points] == [each.result.job.key for each in (first, second)]
+
+
+def test_a_picture_of_a_drag_is_measured_when_no_other_follows(runner: Any, monkeypatch: Any) -> None:
+    now = [100.0]
+    monkeypatch.setattr("texlab.runs.column_runner.time.monotonic", lambda: now[0])
+    measured: list[Any] = runner.measurer.asked
+    start(runner)
+    runner._finished(finished((96, 128), 0.01))
+    assert len(measured) == 1
+    runner._measures_came(Measured({"d": 1.0}, (96, 128)))
+    for number in range(5):
+        now[0] += 0.016
+        start(runner, draft=True)
+        runner._finished(finished((96, 128), 0.02 + number / 100, draft=True))
+        # The next event comes within two frames: no core is taken from its picture.
+        assert (len(measured), runner.measuring) == (1, True)
+    runner._rest.timeout.emit()
+    assert len(measured) == 2
+    now[0] += 0.1
+    runner._measures_came(Measured({"d": 2.0}, (96, 128)))
+    assert not runner.measuring
+    # Numbers that take 100 ms are made every two seconds, so that pictures have nearly all of the time.
+    for after, count in ((OVERDUE_S, 2), (0.1 / MEASURING_SHARE, 3)):
+        now[0] += after
+        start(runner, draft=True)
+        runner._finished(finished((96, 128), after, draft=True))
+        assert len(measured) == count
+        now[0] -= after
 
 
 def test_what_a_drag_makes_is_not_kept_as_a_result(runner: Any) -> None:

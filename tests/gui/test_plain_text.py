@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -75,6 +76,18 @@ def test_tips_have_lines_that_can_be_read() -> None:
     words = "word " * 60
     assert max(map(len, plain.tip_text(words).split("\n"))) <= 60
     assert len(plain.tip_text("x" * 10_000)) < 5_000
+    for text in (
+        "one\n\nthree",
+        "tab\tstop",
+        "ends in blanks  ",
+        "  begins with them",
+        f"short\n{words}\nshort",
+        "",
+    ):
+        lines = [
+            each for part in text.split("\n") for each in textwrap.wrap(part, 60, break_on_hyphens=False) or [""]
+        ]
+        assert plain.tip_text(text) == "\n".join(lines)
 
 
 def shown(tip: str) -> str:

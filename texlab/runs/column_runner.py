@@ -9,7 +9,7 @@ import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from texlab.runs.column_run import (
     BROKEN,
@@ -30,7 +30,7 @@ from texlab.runs.kept_points import KeptPoints
 from texlab.runs.kept_results import KeptResults
 from texlab.runs.past import measured, past_of, remembered
 from texlab.runs.slots import Rank, Slots
-from texlab.runs.worker import Worker
+from texlab.runs.worker import BEHIND_PICTURES, Worker
 from texlab.state.scene import ColumnScene
 from texlab_core.engine.registry import find_method
 from texlab_core.measures.subject import PreparedCache
@@ -60,8 +60,12 @@ class Shared:
     points: KeptPoints = dataclasses.field(default_factory=KeptPoints)
 
 
-# While a control is dragged, numbers that are older than this are finished before the next picture.
+# While a control is dragged, numbers that are older than this are made beside the next pictures,
 OVERDUE_S = 0.7
+# but no more often than that measuring takes this share of the time.
+MEASURING_SHARE = 0.05
+# A draft is measured when the next event does not come within two frames.
+REST_MS = 32
 
 
 class ColumnRunner(QObject):
@@ -89,6 +93,11 @@ class ColumnRunner(QObject):
         self._measured: MeasureRun | None = None
         self._unmeasured: MeasureRun | None = None
         self._measured_s = 0.0
+        self._measuring_since_s = self._measuring_took_s = 0.0
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(REST_MS)
+        self._rest.timeout.connect(self._measure_next)
         # Method and exemplar of the newest job.
         self._origin: tuple[str, str] | None = None
         self.worker = Worker(f"column-{column.id}", shared.slots, self)
@@ -98,7 +107,7 @@ class ColumnRunner(QObject):
         self.worker.failed.connect(self._failed)
         self.worker.cancelled.connect(self._cancelled)
         # Pictures never wait for numbers.
-        self.measurer = Worker(f"measures-{column.id}", shared.slots, self)
+        self.measurer = Worker(f"measures-{column.id}", shared.slots, self, niceness=BEHIND_PICTURES)
         self.measurer.progressed.connect(self._show_measures)
         self.measurer.finished.connect(self._measures_came)
         self.measurer.failed.connect(self._measuring_failed)
@@ -127,12 +136,13 @@ class ColumnRunner(QObject):
     @property
     def measuring(self) -> bool:
         """Whether the numbers about the picture are still to come."""
-        return self._measured is not None
+        return self._measured is not None or self._unmeasured is not None
 
     @property
     def _overdue(self) -> bool:
         """Whether what is shown of the numbers is so old that measuring goes on beside the next pictures."""
-        return time.monotonic() - self._measured_s >= OVERDUE_S
+        age = time.monotonic() - self._measured_s
+        return age >= max(OVERDUE_S, self._measuring_took_s / MEASURING_SHARE)
 
     # What it is asked for.
 
@@ -254,6 +264,7 @@ class ColumnRunner(QObject):
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
+        self._rest.stop()
         self.worker.leave()
         self.measurer.leave()
 
@@ -299,7 +310,11 @@ class ColumnRunner(QObject):
         result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
         quick = self.scene.draft or self.drafted
         self._unmeasured = MeasureRun(image, self._exemplar, result, self._shared.prepared, quick)
-        if self._measured is None:
+        if self._measured is not None:
+            return
+        if self.drafted and not self._overdue:
+            self._rest.start()
+        else:
             self._measure_next()
 
     # Numbers about the picture.
@@ -311,17 +326,23 @@ class ColumnRunner(QObject):
         return self._shared.kept.measured(end.result.job.key)
 
     def _measure_next(self) -> None:
+        self._rest.stop()
         self._measured, self._unmeasured = self._unmeasured, None
         if self._measured is not None:
+            self._measuring_since_s = time.monotonic()
             self.measurer.submit(self._measured)
 
     def _stop_measuring(self) -> None:
+        self._rest.stop()
         self._measured = self._unmeasured = None
         self.measurer.cancel()
 
     def _measures_came(self, end: Measured) -> None:
-        self._measured_s = time.monotonic()
         run = self._measured
+        self._measured_s = time.monotonic()
+        # What is no draft is measured thoroughly, which says nothing of how long the quick numbers take.
+        quick = run is not None and run.draft
+        self._measuring_took_s = self._measured_s - self._measuring_since_s if quick else 0.0
         if run is not None and run.result is not None and not run.draft:
             self._shared.kept.note(run.result.job.key, end)
         history = self.scene.history

@@ -26,7 +26,9 @@ from texlab_core.errors import Cancelled, InputError
 log = logging.getLogger(__name__)
 
 PROGRESS_INTERVAL_S = 1 / 60
+# Threads of work let the window go first, and those that measure let pictures go first.
 NICENESS = 5
+BEHIND_PICTURES = 15
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +87,16 @@ class Worker(QObject):
     idle = Signal()
     _event = Signal(object)
 
-    def __init__(self, name: str, slots: Slots | None = None, parent: QObject | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        slots: Slots | None = None,
+        parent: QObject | None = None,
+        *,
+        niceness: int = NICENESS,
+    ) -> None:
         super().__init__(parent)
+        self._niceness = niceness
         self.setObjectName(f"worker-{name}")
         self._slots = slots
         self._mail = threading.Condition()
@@ -199,7 +209,7 @@ class Worker(QObject):
     # The thread's side.
 
     def _work(self) -> None:
-        _give_way()
+        _give_way(self._niceness)
         while True:
             with self._mail:
                 while self._request is None and not (self._closing or self._ending):
@@ -293,8 +303,8 @@ class Worker(QObject):
             self.progressed.emit(waiting[1])
 
 
-def _give_way() -> None:
+def _give_way(niceness: int) -> None:
     """Let the window's thread go first, where a thread can say so (Linux)."""
     if sys.platform == "linux":
         with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)

@@ -231,11 +231,14 @@ def are_same(columns: Sequence[ColumnScene], others: Sequence[ColumnScene]) -> b
     return len(columns) == len(others) and all(map(operator.is_, columns, others))
 
 
+# Compared by what they are.
+_PARTS = tuple(each.name for each in fields(Scene) if each.name not in ("columns", "probe", "seed", "selected_id"))
+
+
 def same_but_probe(scene: Scene, other: Scene) -> bool:
     """Whether two scenes differ in nothing but the pixel that the user asks about."""
-    names = (each.name for each in fields(Scene) if each.name not in ("columns", "probe", "seed", "selected_id"))
     return (
         are_same(scene.columns, other.columns)
         and (scene.seed, scene.selected_id) == (other.seed, other.selected_id)
-        and all(getattr(scene, name) is getattr(other, name) for name in names)
+        and all(getattr(scene, name) is getattr(other, name) for name in _PARTS)
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import html
 import textwrap
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
@@ -51,16 +52,20 @@ def tip_text(text: str) -> str:
     """Return what shows as this text in a tooltip, in lines of at most 60 characters."""
     if len(text) > LONGEST_TIP:
         text = text[:LONGEST_TIP] + " …"
-    lines = [
-        line
-        for paragraph in text.split("\n")
-        for line in textwrap.wrap(paragraph, TIP_WIDTH, break_on_hyphens=False) or [""]
-    ]
-    shown = "\n".join(lines)
+    shown = "\n".join(map(_wrapped, text.split("\n")))
     # Qt takes nothing for markup that has no tag.
     if "<" not in shown:
         return shown
+    lines = shown.split("\n")
     return "<qt>" + "<br>".join(html.escape(line).replace(" ", "&nbsp;") for line in lines) + "</qt>"
+
+
+@lru_cache(maxsize=1024)
+def _wrapped(paragraph: str) -> str:
+    # Numbers change with every picture while a control is dragged; the long sentences beside them stay.
+    if len(paragraph) <= TIP_WIDTH and paragraph.isprintable():
+        return paragraph.rstrip()
+    return "\n".join(textwrap.wrap(paragraph, TIP_WIDTH, break_on_hyphens=False))
 
 
 def set_tip(target: QWidget | QAction | QTreeWidgetItem | QListWidgetItem | QTableWidgetItem, text: str) -> None:

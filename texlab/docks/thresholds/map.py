@@ -267,11 +267,11 @@ class TableMap(QWidget):
         ink = QColor(self._theme.text)
         for row, parts in enumerate(runs(view, self._locked)):
             for first, last in parts:
-                for column in range(first, last + 1):
-                    # Cells that hold the same are one field, unless their colours say more.
-                    joined = shown is None and column < last
-                    area = self.cell_rect(row, column).adjusted(0, 0, 1 if joined else -1, -1)
-                    painter.fillRect(area, cell_colour(*(int(part) for part in table[row, column])))
+                # Cells that hold the same are one field, unless their colours say more.
+                fields = [(first, last)] if shown is None else [(each, each) for each in range(first, last + 1)]
+                for left, right in fields:
+                    area = self.cell_rect(row, left).united(self.cell_rect(row, right)).adjusted(0, 0, -1, -1)
+                    painter.fillRect(area, cell_colour(*(int(part) for part in table[row, left])))
                 self._paint_number(painter, writer, row, first, last)
                 area = self.cell_rect(row, first).adjusted(0, 0, -1, -1)
                 if view.changed[row, first]:

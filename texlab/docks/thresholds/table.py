@@ -256,14 +256,18 @@ def _fill(
     axes: Axes, heads: tuple[Head, ...], table: ThresholdTable, law_values: NDArray[np.float32]
 ) -> TableView:
     shape = (axes.depth, len(heads))
-    values, changed, mixed = np.empty(shape), np.zeros(shape, bool), np.zeros(shape, bool)
-    for column, head in enumerate(heads):
-        for row in range(axes.depth):
-            found = [table.get(row + 1, feature.name) for feature in head.features]
-            numbers = [float(law_values[row]) if value is None else value for value in found]
-            values[row, column] = numbers[0]
-            changed[row, column] = any(value is not None for value in found)
-            mixed[row, column] = max(numbers) > min(numbers)
+    values = np.repeat(law_values[:, None].astype(np.float64), shape[1], axis=1)
+    changed, mixed = np.zeros(shape, bool), np.zeros(shape, bool)
+    # A view is made for every event of a drag, and hardly ever is a cell set by hand.
+    features = ((each.name, place) for place, head in enumerate(heads) for each in head.features)
+    columns = dict(features) if table.cells else {}
+    cells = [cell for cell, _ in table.cells if cell[0] <= axes.depth and cell[1] in columns]
+    for row, column in {(k - 1, columns[name]) for k, name in cells}:
+        found = [table.get(row + 1, feature.name) for feature in heads[column].features]
+        numbers = [float(law_values[row]) if value is None else value for value in found]
+        values[row, column] = numbers[0]
+        changed[row, column] = True
+        mixed[row, column] = max(numbers) > min(numbers)
     return TableView(axes, heads, table, law_values, values, changed, mixed)
 
 
