@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from texlab.docks.dependence.joint_view import shares
 from texlab.docks.dependence.panels import MARKED
 from texlab.docks.dependence.ready import FAILURES, choices
 from texlab.docks.explain import heeger_bergen
-from texlab.state.intentions import OpenFailure, OpenLesson, OpenTab, Pin
+from texlab.state.intentions import LightUp, OpenFailure, OpenLesson, OpenTab, Pin
 from texlab.state.scene import Probe, Scene
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.job import Job
@@ -139,6 +141,43 @@ def test_dragging_over_cells_shows_their_pixels_everywhere(hand: Hand) -> None:
         assert hand.joint(1).brush == brush
     np.testing.assert_array_equal(hand.dock.views[0].pane.picture, hand.dock.answer[0].picture)
     assert not bright(hand.dock.views[0].pane.picture).any()
+
+
+def test_the_pixels_light_up_in_the_columns_while_the_tab_is_seen(hand: Hand) -> None:
+    def lit() -> Any:
+        return [each for each in hand.intended if isinstance(each, LightUp)][-1].places
+
+    assert not [each for each in hand.intended if isinstance(each, LightUp)]
+    drag(hand.qtbot, hand.joint(0), [hand.at(0, 14, 15), hand.at(0, 18, 20)])
+    images = [hand.scene.exemplar.pixels, *(each.result.image for each in hand.scene.columns)]
+    assert [each.column_id for each in lit()] == [0, *(each.id for each in hand.scene.columns)]
+    for each, image, view in zip(lit(), images, hand.dock.views, strict=True):
+        assert each.image is image
+        pixels = view.panel.found.pixels((14, 18, 15, 20))
+        assert pixels.any()
+        np.testing.assert_array_equal((each.veil == (*MARKED, 255)).all(axis=2), pixels)
+        # What is not chosen stays to be seen.
+        assert 0 < each.veil[~pixels][:, 3].max() < 255
+    hand.dock.set_seen(False)
+    assert lit() == ()
+    hand.dock.set_seen(True)
+    assert len(lit()) == 3
+    # A stage of a run is not what the column shows.
+    scene = hand.scene
+    stage = SimpleNamespace(name="s", picture=np.zeros((64, 56, 3), np.uint8), values=lambda _: RESULT)
+    hand.scene = replace(scene, stage=stage)
+    hand.feed()
+    assert [each.column_id for each in lit()] == [0, scene.columns[1].id]
+    hand.scene = scene
+    hand.feed()
+    assert len(lit()) == 3
+    hand.joint(0).setFocus()
+    hand.qtbot.keyClick(hand.joint(0), Qt.Key.Key_Escape)
+    assert lit() == ()
+    hand.qtbot.keyClick(hand.joint(0), Qt.Key.Key_Up)
+    assert len(lit()) == 3
+    hand.dock.present_nothing("There is no exemplar.")
+    assert lit() == ()
 
 
 def test_keys_choose_cells(hand: Hand) -> None:

@@ -15,7 +15,7 @@ from texlab.columns.overlays import Overlays, available
 from texlab.columns.status import details, status_parts
 from texlab.runs.exemplar import Prepared
 from texlab.state.session import Column, Sample, Session, State
-from texlab.style.pictures import Mark, to_picture
+from texlab.style.pictures import Lit, Mark, to_picture
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.view_link import ViewLink
 from texlab.window.presenter import Presenter
@@ -95,6 +95,36 @@ class Bench:
 
     def column_scene(self, column_id: int) -> Any:
         return self.column if column_id == 1 else None
+
+
+def test_pixels_light_up_in_the_pictures_that_they_are_of(bench: Bench, qtbot: Any) -> None:
+    panes = [ImagePane(ViewLink()) for _ in range(2)]
+    for pane, picture in zip(panes, (bench.prepared.source_picture, to_picture(bench.column.image)), strict=True):
+        qtbot.addWidget(pane)
+        pane.set_picture(picture)
+    bench.exemplar.pane = panes[0]
+    bench.workspace.columns = {1: SimpleNamespace(pane=panes[1], scene=bench.column)}
+    veils = [noise(*size, 4, seed=7).astype(np.uint8) for size in ((12, 16), (24, 32))]
+    images = (bench.prepared.exemplar.pixels, bench.column.image)
+    places = tuple(map(Lit, (0, 1), images, veils))
+    bench.presenter.light_up(places)
+    # The pane of the exemplar shows all of the source, and the box lies at (4, 6).
+    shown = panes[0].light
+    np.testing.assert_array_equal(shown[4:, 6:], veils[0])
+    assert shown.shape == (16, 22, 4)
+    assert not shown[:4].any()
+    np.testing.assert_array_equal(panes[1].light, veils[1])
+    # The same picture again keeps it, another one does not.
+    panes[1].set_picture(panes[1].picture)
+    assert panes[1].light is not None
+    panes[1].set_picture(panes[1].picture.copy())
+    assert panes[1].light is None
+    # What is of another picture by now lights up nowhere.
+    bench.presenter.light_up(tuple(Lit(each.column_id, each.image.copy(), each.veil) for each in places))
+    assert [pane.light for pane in panes] == [None, None]
+    bench.presenter.light_up(places)
+    bench.presenter.light_up(())
+    assert [pane.light for pane in panes] == [None, None]
 
 
 @pytest.fixture

@@ -125,6 +125,7 @@ class Explorer(QObject):
             self.opener.open_failure,
             self._open_tab,
             window.take_stage,
+            self.presenter.light_up,
         )
         self._closed = False
         self._memory = QTimer(self)

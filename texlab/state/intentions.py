@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from texlab.state.scene import Frame
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
-    from texlab.style.pictures import Mark
+    from texlab.style.pictures import Lit, Mark
     from texlab_core.documents.lessons import Lesson
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.params import Params
@@ -139,6 +139,13 @@ class Point:
     column_id: int
     row: int
     column: int
+
+
+@dataclass(frozen=True, eq=False)
+class LightUp:
+    """Let these pixels of the pictures light up, and no others."""
+
+    places: tuple[Lit, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -357,6 +364,7 @@ Intention = (
     | TakeStage
     | ChooseColumn
     | Point
+    | LightUp
     | Pin
     | ShowStage
     | TakePicture

@@ -39,6 +39,25 @@ def describe_pixel(image: FloatImage, row: int, column: int) -> str:
 Picture = NDArray[np.uint8]
 
 
+@dataclass(frozen=True, eq=False)
+class Lit:
+    """Pixels of a picture that light up.
+
+    Parameters
+    ----------
+    column_id
+        Of the column; 0 for the exemplar.
+    image
+        The very values whose pixels they are: they light up in no other picture.
+    veil
+        (H, W, 4) uint8, laid over the picture.
+    """
+
+    column_id: int
+    image: FloatImage
+    veil: NDArray[np.uint8]
+
+
 @dataclass(frozen=True)
 class Mark:
     """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.

@@ -91,6 +91,7 @@ class ImagePane(Pane):
     _note: Label | None = None
     _copies: Sequence[PictureItem] = ()
     _overlay: PictureItem | None = None
+    _light: PictureItem | None = None
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         self._tiled = False
@@ -119,6 +120,9 @@ class ImagePane(Pane):
 
     def set_picture(self, picture: Picture | None) -> None:
         """Show a picture, or nothing."""
+        if picture is not self._picture:
+            # What lit up were pixels of another picture.
+            self.set_light(None)
         self._picture = picture
         self._place_copies()
         for item in (self.item, *self._copies):
@@ -139,8 +143,8 @@ class ImagePane(Pane):
 
     def _prepare(self) -> None:
         """Prepare for painting what can be seen of large pictures."""
-        overlay = () if self._overlay is None else (self._overlay,)
-        for item in (self.item, *self._copies, *overlay):
+        laid_over = (each for each in (self._overlay, self._light) if each is not None)
+        for item in (self.item, *self._copies, *laid_over):
             item.look(*self._seen(item))
 
     def set_surround(self, colour: str) -> None:
@@ -194,6 +198,28 @@ class ImagePane(Pane):
             self.view.addItem(self._overlay)
         self._overlay.setOpacity(opacity)
         self._overlay.show_picture(picture, *self._seen(self._overlay))
+
+    @property
+    def light(self) -> NDArray[np.uint8] | None:
+        """What lights up, or nothing."""
+        return None if self._light is None else self._light.whole
+
+    def set_light(self, veil: NDArray[np.uint8] | None, offset: tuple[int, int] = (0, 0)) -> None:
+        """Lay a veil (H, W, 4) over the picture, so far down and across, until the picture is another one."""
+        if self._light is not None:
+            self.view.removeItem(self._light)
+            self._light = None
+        if veil is None:
+            return
+        height, width = offset[0] + veil.shape[0], offset[1] + veil.shape[1]
+        if any(offset):
+            placed = np.zeros((height, width, 4), np.uint8)
+            placed[offset[0] :, offset[1] :] = veil
+            veil = placed
+        self._light = PictureItem()
+        self._light.setZValue(11)
+        self.view.addItem(self._light)
+        self._light.show_picture(veil, *self._seen(self._light))
 
     def set_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float] = (0.0, 0.0)) -> None:
         """Outline places of the picture; ``offset`` (row, column) is added to them."""

@@ -22,7 +22,7 @@ Part = tuple[int, int, int, int, int]
 
 
 class PictureItem(pg.ImageItem):  # type: ignore[misc]  # pyqtgraph has no types
-    """Shows an (H, W, 3) uint8 picture in its own pixels, whatever part and reduction of it is prepared."""
+    """Shows an (H, W, 3 or 4) uint8 picture in its own pixels, whatever part and reduction of it is prepared."""
 
     def __init__(self) -> None:
         super().__init__(levels=None)
@@ -35,6 +35,11 @@ class PictureItem(pg.ImageItem):  # type: ignore[misc]  # pyqtgraph has no types
         """Top, left, bottom, right and step of what is prepared; None for all of a small picture, or none."""
         return self._part
 
+    @property
+    def whole(self) -> Picture | None:
+        """All of what is shown."""
+        return self._whole
+
     def show_picture(
         self, picture: Picture | None, seen: QRectF, pixel: float, table: NDArray[np.uint8] | None = None
     ) -> None:
@@ -43,7 +48,7 @@ class PictureItem(pg.ImageItem):  # type: ignore[misc]  # pyqtgraph has no types
         Parameters
         ----------
         picture
-            (H, W, 3) uint8, or None.
+            (H, W, 3) uint8, or (H, W, 4) with how much it covers, or None.
         seen
             What can be seen, in pixels of the picture.
         pixel

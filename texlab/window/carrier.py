@@ -20,6 +20,7 @@ from texlab.state.intentions import (
     GoToState,
     GoToStep,
     LeaveLesson,
+    LightUp,
     NewLesson,
     Open,
     OpenFailure,
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 
     from texlab.runs.controller import Controller
     from texlab.state.intentions import Intention
-    from texlab.style.pictures import Mark
+    from texlab.style.pictures import Lit, Mark
 
 
 class Carrier:
@@ -76,6 +77,8 @@ class Carrier:
         Brings the tab of this name to the front and sets its controls by name.
     take_stage
         Lets the dock of this name take the whole stage, or give it back.
+    light_up
+        Lets pixels of the pictures light up.
     """
 
     def __init__(
@@ -89,6 +92,7 @@ class Carrier:
         open_failure: Callable[[str, str], None],
         open_tab: Callable[[str, Mapping[str, Any]], None],
         take_stage: Callable[[str], None] = lambda _: None,
+        light_up: Callable[[tuple[Lit, ...]], None] = lambda _: None,
     ) -> None:
         self._controller = controller
         self._session = controller.session
@@ -100,6 +104,7 @@ class Carrier:
         self._open_failure = open_failure
         self._open_tab = open_tab
         self._take_stage = take_stage
+        self._light_up = light_up
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -132,6 +137,8 @@ class Carrier:
                 self._take_picture(dock, how)
             case ShowMarks(marks):
                 self._show_marks(marks)
+            case LightUp(places):
+                self._light_up(places)
             case Open(source):
                 self._open_source(source)
             case OpenFailure(name, beside):

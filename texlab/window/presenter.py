@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from texlab.runs.exemplar import Prepared
     from texlab.state.scene import Scene
     from texlab.storage.settings import Settings
-    from texlab.style.pictures import Mark
+    from texlab.style.pictures import Lit, Mark
     from texlab.style.theme import Theme
     from texlab.window.main_window import MainWindow
 
@@ -107,6 +107,20 @@ class Presenter(QObject):
         crop = sample.crop if sample is not None else None
         # Methods see the crop; the pane shows the whole source.
         self._workspace.exemplar.pane.set_marks(marks, (0.0, 0.0) if crop is None else (crop.top, crop.left))
+
+    def light_up(self, places: tuple[Lit, ...]) -> None:
+        """Let pixels light up in the pictures that they are of, for as long as these are shown."""
+        sample, prepared = self._session.state.sample, self._controller.prepared
+        crop = sample.crop if sample is not None else None
+        by_column = {each.column_id: each for each in places}
+        found = by_column.get(0)
+        own = found is not None and prepared is not None and prepared.exemplar.pixels is found.image
+        offset = (0, 0) if crop is None else (crop.top, crop.left)
+        self._workspace.exemplar.pane.set_light(found.veil if own and found is not None else None, offset)
+        for column_id, view in self._workspace.columns.items():
+            found = by_column.get(column_id)
+            own = found is not None and view.scene is not None and view.scene.image is found.image
+            view.pane.set_light(found.veil if own and found is not None else None)
 
     def show_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

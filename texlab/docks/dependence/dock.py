@@ -12,7 +12,7 @@ from texlab.docks.dependence.panel_view import PanelView
 from texlab.docks.dependence.panels import panels
 from texlab.docks.dependence.ready import ASKING, choices, opening
 from texlab.docks.frame import FramedDock, LookedAt, replace_items, shown_image
-from texlab.state.intentions import Pin
+from texlab.state.intentions import LightUp, Pin
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.dependence import FARTHEST, MOST_LEVEL, Pair
@@ -46,7 +46,7 @@ class DependenceDock(FramedDock):
     title = "Dependence"
     help = (
         "What a coefficient has to do with its parent, another orientation or a neighbour: exemplar beside the "
-        "result. Choose cells of a histogram to see where their pixels are."
+        "result. Choose cells of a histogram: their pixels light up here and in the columns."
     )
     order = 21
     rest_ms = 20
@@ -56,6 +56,7 @@ class DependenceDock(FramedDock):
         """Make the controls and the panels."""
         self._brush: Rectangle | None = None
         self._probe: Probe | None = None
+        self._seen, self._lights = True, False
         self.relation = self.add_choice(
             "relation", "Relation", "Which two coefficients are looked at together", RELATIONS, self._pair_changed
         )
@@ -193,6 +194,7 @@ class DependenceDock(FramedDock):
         for view in self.views:
             view.joint.show_brush(self._brush)
         self._mark_probe()
+        self._light_up()
         here, given = answer[0].found.pair.names()
         said = f"Upwards: {here}. To the right: {given}."
         if answer[0].share is not None:
@@ -200,6 +202,25 @@ class DependenceDock(FramedDock):
             said = f"The chosen cells hold: {parts}. {said}"
         self.pair_name.setText(said)
         set_tip(self.pair_name, said)
+
+    def present_nothing(self, reason: str) -> None:
+        """Show why there is nothing; nothing lights up then."""
+        super().present_nothing(reason)
+        self._light_up()
+
+    def set_seen(self, seen: bool) -> None:
+        """Light pixels up in the columns only while the tab is seen."""
+        super().set_seen(seen)
+        self._seen = seen
+        self._light_up()
+
+    def _light_up(self) -> None:
+        """Let the pixels of the chosen cells light up in their columns, too."""
+        shown: tuple[Panel, ...] = (self.answer or ()) if self._seen and self._brush is not None else ()
+        places = tuple(each.lit for each in shown if each.lit is not None)
+        if places or self._lights:
+            self._lights = bool(places)
+            self.intention.emit(LightUp(places))
 
     def _redraw(self) -> None:
         shown: tuple[Panel, ...] = self.answer or ()
@@ -241,10 +262,13 @@ class DependenceDock(FramedDock):
     def _forget_brush(self) -> None:
         """Ask anew: the cells of other axes are other cells."""
         self._brush = None
+        self._light_up()
         self.ask()
 
     def _brushed(self, brush: Rectangle | None) -> None:
         self._brush = brush
+        if brush is None:
+            self._light_up()
         for view in self.views:
             view.joint.show_brush(brush)
         self.ask()

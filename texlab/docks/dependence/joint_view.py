@@ -59,7 +59,7 @@ class JointView(OwnKeys, QWidget):
         set_tip(
             self,
             "What is given grows to the right, what is looked at upwards. Drag over cells to see where their "
-            "pixels are, or use the arrow keys (with Shift for more cells); Escape lets go.",
+            "pixels are, here and in the columns, or use the arrow keys (with Shift for more); Escape lets go.",
         )
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)

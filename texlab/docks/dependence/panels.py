@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab.docks.recent import Recent, Same
-from texlab.style.pictures import to_picture
+from texlab.style.pictures import Lit, to_picture
 from texlab_core.errors import Cancelled
 from texlab_core.stats.dependence import dependence, difference
 
@@ -42,6 +42,8 @@ class Panel:
         Its histograms.
     picture
         What is shown: the pixels of the brushed cells bright on a dimmed picture, or the picture.
+    lit
+        The same as a veil over the picture in its column; None without a brush, and of a stage of a run.
     share
         Share of the samples that lie in the brushed cells; None without a brush.
     difference
@@ -54,6 +56,7 @@ class Panel:
     picture: Picture
     share: float | None = None
     difference: float | None = None
+    lit: Lit | None = None
 
     def words(self) -> str:
         """Return its numbers."""
@@ -84,7 +87,7 @@ def panels(
     pixels = exemplar.values()
     assert pixels is not None
     first = _known.get((exemplar.key, pair, values), lambda: dependence(pixels, pair, values, None, look))
-    made = [_panel("Exemplar", 0, first, pixels, brush, None)]
+    made = [_panel("Exemplar", 0, first, exemplar, brush, None)]
     for title, column_id, shown in results:
         look()
         image = shown.values()
@@ -94,7 +97,7 @@ def panels(
             return dependence(image, pair, values, first, look)
 
         found = _known.get((shown.key, Same(first), pair, values), compute)
-        made.append(_panel(title, column_id, found, image, brush, difference(first.ranks, found.ranks)))
+        made.append(_panel(title, column_id, found, shown, brush, difference(first.ranks, found.ranks)))
     return tuple(made)
 
 
@@ -102,16 +105,28 @@ def _panel(
     title: str,
     column_id: int,
     found: Dependence,
-    image: NDArray[np.float32],
+    shown: LookedAt,
     brush: Rectangle | None,
     apart: float | None,
 ) -> Panel:
+    image = shown.values()
+    assert image is not None
     picture = to_picture(image)
     if brush is None:
         return Panel(title, column_id, found, picture, None, apart)
     top, bottom, left, right = brush
     share = float(found.joint[top : bottom + 1, left : right + 1].sum())
-    return Panel(title, column_id, found, marked(picture, found.pixels(brush)), share, apart)
+    pixels = found.pixels(brush)
+    lit = Lit(column_id, image, veil(pixels)) if shown.stage is None else None
+    return Panel(title, column_id, found, marked(picture, pixels), share, apart, lit)
+
+
+def veil(pixels: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Return what lights up pixels (H, W) in a picture below, and dims the others: (H, W, 4) uint8."""
+    made = np.zeros((*pixels.shape, 4), np.uint8)
+    made[:, :, 3] = round(255 * (1 - DIMMED))
+    made[pixels] = (*MARKED, 255)
+    return made
 
 
 def marked(picture: Picture, pixels: NDArray[np.bool_]) -> Picture:
