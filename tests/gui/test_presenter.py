@@ -48,6 +48,7 @@ class Window(QObject):
         self.pixel_label, self.jobs_label = Said(), Said()
         self.message_bar, self.gallery, self.parameters = Said(), Said(), Said()
         self.gallery.strip = Said()
+        self.gallery.strip.sources = ()
         self.actions_by_name = {name: QAction(self) for name in ("export", "use", "crop")}
         self.title = ""
         self.sessions = 0
@@ -77,7 +78,13 @@ class Bench:
         exemplar = image_input(self.source.pixels[4:16, 6:22], "gallery:sand")
         self.prepared = Prepared(exemplar, to_picture(self.source.pixels), self.source)
         self.column = column_of(noise(24, 32), method=HB.id, params=HB.params(), **column)
-        controller: Any = SimpleNamespace(session=session, prepared=self.prepared, column_scene=self.column_scene)
+        self.opened: list[tuple[str, ...]] = []
+        controller: Any = SimpleNamespace(
+            session=session,
+            prepared=self.prepared,
+            column_scene=self.column_scene,
+            tell_opened=self.opened.append,
+        )
         self.exemplar, self.link, self.overlays = Said(), Said(), Said()
         pane: Any = Said()
         self.pane = pane
@@ -213,6 +220,7 @@ def test_the_session_and_the_exemplar_have_names(bench: Bench) -> None:
     # What was said was about the exemplar before.
     assert "hide" in bench.window.message_bar.calls
     assert bench.window.recent == ["a.png"]
+    assert bench.opened[-1] == ("a.png",)
 
 
 # Outlines.
