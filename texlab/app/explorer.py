@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, QTimer
 
 from texlab.app.crash import CrashHandler
 from texlab.app.memory import memory_text
+from texlab.columns.apart import places_from_json, places_to_json
 from texlab.columns.overlays import Overlays
 from texlab.columns.workspace import Workspace
 from texlab.docks import dock_classes
@@ -58,6 +59,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+# Where the settings keep which columns had windows of their own.
+APART = "apart"
 FIRST_TEXTURE = "gallery:structured-pebbles"
 FIRST_CROP = Crop(16, 16, 128, 128)
 MEMORY_MS = 2000
@@ -135,7 +138,7 @@ class Explorer(QObject):
         self.stage = StageSettings(window, self.workspace, settings)
         window.add_docks(self.docks)
         self.teacher.desk.watch_tabs()
-        self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted)
+        self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted, self.workspace)
         window.actions_by_name["own-layouts"].triggered.connect(lambda _: self.own_layouts.ask())
         self.teach_mode = TeachMode(window, self.workspace, self.session)
         self.teacher.told.connect(self.teach_mode.notes.show_lesson)
@@ -180,6 +183,8 @@ class Explorer(QObject):
         place = place if isinstance(place, int) and 0 <= place < len(made) else 0
         self.handlers.select(made[place].id)
         self.session.reset_history()
+        ids = [column.id for column in made]
+        self.workspace.apart.want(places_from_json(self.settings.values.get(APART), ids))
         if broken := " ".join(each.sentence for each in failures()):
             log.warning(broken)
             self.window.message_bar.tell(broken, "problem")
@@ -210,6 +215,8 @@ class Explorer(QObject):
         self.handlers.close()
         self.teach_mode.close()
         self.window.remember_geometry()
+        self.settings.values[APART] = places_to_json(self.workspace.apart.places, self.workspace.order)
+        self.workspace.apart.close_all()
         # Nobody has to watch the threads come to their end.
         self.window.hide()
         self.controller.leave()
@@ -271,6 +278,8 @@ class Explorer(QObject):
         # The themes outlive the window; a function that knows the window would keep it.
         self.themes.changed.connect(self._show_theme)
         self.workspace.column_made.connect(self._connect_column)
+        # Its commands have their keys there too.
+        self.workspace.apart.made.connect(lambda made: made.addActions([*window.actions_by_name.values()]))
         self.workspace.column_moved.connect(session.move_column)
         for dock in self.docks:
             dock.intention.connect(self.carrier.carry_out)

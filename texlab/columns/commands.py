@@ -67,6 +67,11 @@ COLUMN_COMMANDS = {
             own="Enlarge, or put back",
         ),
         Command(
+            "&Column", "apart", "Column in its o&wn window", "Shift+M",
+            "Give the chosen column a window of its own, or put it back on the stage",
+            own="In a window of its own, or back",
+        ),
+        Command(
             "&Column", "rename", "Rename column ...", "F2", "Call the chosen column by a name of its own",
             own="Rename ...",
         ),

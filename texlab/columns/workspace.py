@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPoint, QRect, QSize, QTimer, Signal
 from PySide6.QtWidgets import QApplication, QFrame, QRubberBand, QScrollArea
 
+from texlab.columns.apart import Apart
 from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
 from texlab.columns.grid import Grid
@@ -16,7 +17,7 @@ from texlab.style.pictures import Mark
 from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
@@ -57,6 +58,8 @@ class Workspace(QScrollArea):
         self.grid = Grid()
         self.exemplar = ExemplarView(self.exemplar_link, self.grid)
         self.setWidget(self.grid)
+        self.apart = Apart(self)
+        self.apart.changed.connect(self._show_cells)
         self._landing = QRubberBand(QRubberBand.Shape.Rectangle, self.grid)
         self._linked = False
         self._tiled = False
@@ -89,6 +92,7 @@ class Workspace(QScrollArea):
         for column_id in [known for known in self.columns if known not in wanted]:
             view = self.columns.pop(column_id)
             self.column_gone.emit(view)
+            self.apart.drop(column_id)
             view.pane.detach()
             view.setParent(None)
             view.deleteLater()
@@ -106,6 +110,7 @@ class Workspace(QScrollArea):
             self._titled = scene.columns
             for column, title in zip(scene.columns, titles(scene.columns), strict=True):
                 self.columns[column.id].show_title(title)
+                self.apart.show_title(column.id, title)
         for column in scene.columns:
             view = self.columns[column.id]
             view.show_scene(column)
@@ -114,7 +119,8 @@ class Workspace(QScrollArea):
         if scene.selected_id != self._chosen:
             self._chosen = scene.selected_id
             chosen = self.columns.get(self._chosen)
-            if self._enlarged not in (None, EXEMPLAR, self._chosen) and chosen is not None:
+            stands_here = chosen is not None and self._chosen not in self.apart
+            if self._enlarged not in (None, EXEMPLAR, self._chosen) and stands_here:
                 self.enlarge(self._chosen)
             # What is clicked stays under the pointer; a new column may have come there by chance.
             if chosen is not None and (self._chosen in added or not chosen.underMouse()):
@@ -131,6 +137,8 @@ class Workspace(QScrollArea):
         view.enlarged.connect(self.enlarge)
         self.columns[column_id] = view
         self.column_made.emit(view)
+        if self.apart.is_wanted(column_id):
+            self.apart.detach(view)
 
     # Where it stands.
 
@@ -140,9 +148,34 @@ class Workspace(QScrollArea):
         return self._enlarged
 
     def enlarge(self, column_id: int) -> None:
-        """Show one alone; all of them again when it is alone already."""
+        """Show one alone; all of them again when it is alone already. Its own window takes the whole screen."""
+        if column_id in self.apart:
+            self.apart.windows[column_id].toggle_size()
+            return
         self._enlarged = None if self._enlarged == column_id else column_id
         self._show_cells()
+
+    def turn_apart(self, column_id: int) -> None:
+        """Give a column a window of its own, or put it back on the stage."""
+        if column_id in self.apart:
+            self.apart.put_back(column_id)
+        elif column_id in self.columns:
+            if self._enlarged == column_id:
+                self._enlarged = None
+            self.apart.detach(self.columns[column_id])
+
+    def take_apart(self, places: Mapping[int, bytes]) -> None:
+        """Give these columns windows of their own, as soon as they are there, and put all others back."""
+        self.apart.put_all_back()
+        self.apart.want(places)
+        for column_id in places:
+            if column_id in self.columns:
+                self.turn_apart(column_id)
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Ids of all columns, from left to right."""
+        return self._order
 
     def show_only(self, column_ids: tuple[int, ...] | None, *, exemplar: bool = True) -> None:
         """Fold away all columns but these, and the exemplar when it is not wanted; None unfolds all.
@@ -156,10 +189,11 @@ class Workspace(QScrollArea):
 
     @property
     def shown_ids(self) -> tuple[int, ...]:
-        """Ids of the columns that are not folded away."""
+        """Ids of the columns that stand on the stage: neither folded away nor in windows of their own."""
+        here = tuple(each for each in self._order if each not in self.apart)
         if self._only is None:
-            return self._order
-        return tuple(each for each in self._order if each in self._only)
+            return here
+        return tuple(each for each in here if each in self._only)
 
     def set_rows(self, rows: Rows) -> None:
         """Arrange the pictures in one row, in two, or in as many as make them largest."""
@@ -172,7 +206,8 @@ class Workspace(QScrollArea):
             cells.insert(0, self.exemplar)
         if self._enlarged is not None:
             cells = [self.exemplar if self._enlarged == EXEMPLAR else self.columns[self._enlarged]]
-        gone = [view for view in (self.exemplar, *self.columns.values()) if view not in cells]
+        staying = [view for each, view in self.columns.items() if each not in self.apart]
+        gone = [view for view in (self.exemplar, *staying) if view not in cells]
         here = QApplication.focusWidget()
         if here is not None and any(view is here or view.isAncestorOf(here) for view in gone):
             # The keyboard would go on to another column, and choose it.
@@ -207,7 +242,7 @@ class Workspace(QScrollArea):
 
     def _scroll(self) -> None:
         view = self.columns.get(self._revealed)
-        if view is not None and not view.isHidden():
+        if view is not None and not view.isHidden() and self._revealed not in self.apart:
             at = view.geometry().center()
             self.ensureVisible(at.x(), at.y(), view.width() // 2 + 2, view.height() // 2 + 2)
 

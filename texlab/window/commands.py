@@ -37,6 +37,7 @@ COMMANDS = (
     _OF["remove"],
     _OF["use"],
     _OF["enlarge"],
+    _OF["apart"],
     _OF["rename"],
     _OF["history"],
     _OF["pin"],

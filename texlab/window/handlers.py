@@ -98,6 +98,7 @@ class Handlers(QObject):
             "copy": exchange.copy,
             "use": self._use,
             "enlarge": self._workspace.enlarge,
+            "apart": self._workspace.turn_apart,
             "rename": self.ask_name,
             "history": self._show_history,
             "pin": self._pin,

@@ -60,7 +60,7 @@ ERRANDS = {
 }
 
 # Commands that need a chosen column, besides those of the tool bar.
-OF_ONE = ("enlarge", "rename", "history", "pin", "own-seed", "new-seed")
+OF_ONE = ("enlarge", "apart", "rename", "history", "pin", "own-seed", "new-seed")
 
 
 class MainWindow(QMainWindow):

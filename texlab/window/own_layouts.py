@@ -12,12 +12,14 @@ from PySide6.QtCore import QByteArray, QObject, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLineEdit, QListWidget, QPushButton, QVBoxLayout, QWidget
 
+from texlab.columns.apart import places_from_json, places_to_json
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.toolbar import LAYOUTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
+    from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
     from texlab.storage.settings import Settings
     from texlab.window.main_window import MainWindow
@@ -26,6 +28,7 @@ KEPT = "layouts"
 MAX_NAME = 60
 MAX_LAYOUTS = 50
 MAX_STATE = 2**16
+MAX_WINDOWS = 32
 Controls = dict[str, dict[str, bool | int | float | str]]
 
 
@@ -45,6 +48,8 @@ class OwnLayout:
         Whether the panels below are seen, and not only their names.
     controls
         How the controls of every tab stood, by tab and by name.
+    apart
+        Which columns had windows of their own, and where those stood, as the settings have it.
     """
 
     base: str
@@ -52,6 +57,7 @@ class OwnLayout:
     front: str
     is_open: bool
     controls: Controls
+    apart: tuple[Any, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Return it for the settings."""
@@ -61,6 +67,7 @@ class OwnLayout:
             "front": self.front,
             "open": self.is_open,
             "controls": self.controls,
+            "apart": list(self.apart),
         }
 
 
@@ -77,7 +84,10 @@ def layout_from_json(value: object) -> OwnLayout | None:
         found = base64.b64decode(state, validate=True)
     except (binascii.Error, ValueError):
         return None
-    return OwnLayout(base, found, front, is_open, _controls(value.get("controls")))
+    apart = value.get("apart")
+    # What is damaged in it is left out when it is used.
+    windows = tuple(apart[:MAX_WINDOWS]) if isinstance(apart, list) else ()
+    return OwnLayout(base, found, front, is_open, _controls(value.get("controls")), windows)
 
 
 def _controls(value: object) -> Controls:
@@ -113,18 +123,26 @@ class OwnLayouts(QObject):
         Where they are kept.
     arrange
         Arranges one of the program's layouts by its name.
+    workspace
+        Whose columns may have windows of their own.
     """
 
     changed = Signal()
 
     def __init__(
-        self, window: MainWindow, docks: Sequence[Dock], settings: Settings, arrange: Callable[[str], None]
+        self,
+        window: MainWindow,
+        docks: Sequence[Dock],
+        settings: Settings,
+        arrange: Callable[[str], None],
+        workspace: Workspace,
     ) -> None:
         super().__init__(window)
         self._window = window
         self._docks = docks
         self._settings = settings
         self._arrange = arrange
+        self._workspace = workspace
         self._actions: list[QAction] = []
         self._offer()
 
@@ -142,7 +160,9 @@ class OwnLayouts(QObject):
         front = next((each.name for each in self._docks if not each.visibleRegion().isEmpty()), "")
         controls = {each.name: each.settings() for each in self._docks}
         state = bytes(window.saveState().data())
-        return OwnLayout(base if base in LAYOUTS else "explore", state, front, window.strip.is_open, controls)
+        apart = tuple(places_to_json(self._workspace.apart.places, self._workspace.order))
+        base = base if base in LAYOUTS else "explore"
+        return OwnLayout(base, state, front, window.strip.is_open, controls, apart)
 
     def keep(self, name: str, layout: OwnLayout | None = None) -> None:
         """Keep a layout, or the present one, under a name; one of the same name is replaced."""
@@ -168,6 +188,7 @@ class OwnLayouts(QObject):
         if front is not None and not front.isHidden():
             front.raise_()
         window.strip.set_open(layout.is_open)
+        self._workspace.take_apart(places_from_json(list(layout.apart), self._workspace.order))
 
     def _set(self, layouts: dict[str, OwnLayout]) -> None:
         self._settings.values[KEPT] = {name: layout.to_json() for name, layout in layouts.items()}
