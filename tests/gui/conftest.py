@@ -145,10 +145,13 @@ def explorer(open_window: Callable[..., Explorer], texture: Path) -> Explorer:
 
 
 def wait_idle(qtbot: Any, explorer: Explorer) -> None:
-    qtbot.waitUntil(lambda: explorer.idle, timeout=PATIENCE_MS)
-    # What was announced last is shown on the next turn of the event loop.
-    with qtbot.waitSignal(explorer.presenter.painted, timeout=PATIENCE_MS):
-        explorer.controller._refresh.start()
+    idle = False
+    while not idle:
+        qtbot.waitUntil(lambda: explorer.idle, timeout=PATIENCE_MS)
+        # What was announced last is shown on the next turn of the event loop, and may ask for more.
+        with qtbot.waitSignal(explorer.presenter.painted, timeout=PATIENCE_MS):
+            explorer.controller._refresh.start()
+        idle = explorer.idle
 
 
 def ids(explorer: Explorer) -> list[int]:

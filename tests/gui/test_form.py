@@ -337,6 +337,7 @@ def wheel(widget, steps):
 def test_the_wheel_scrolls_the_panel_unless_a_control_has_the_focus(qtbot):
     view = shown(qtbot, ParametersView(), 270, 300)
     view.show_column(1, STUB_METHOD, EveryParams())
+    view.form.complete()
     QApplication.processEvents()
     bar = view.scroll_area.verticalScrollBar()
     assert bar.maximum() > 0
@@ -542,6 +543,31 @@ def test_a_form_that_is_gone_tells_nothing(qtbot):
     knob.edited.emit(9, True)
     QApplication.processEvents()
     assert heard == []
+
+
+def test_a_form_comes_in_pieces_once_and_shows_what_it_was_handed(qtbot):
+    view = shown(qtbot, ParametersView())
+    view.show_column(1, STUB_METHOD, EveryParams(rounds=7))
+    form = view.form
+    view.show_scene("result")
+    assert not form.findChildren(KnobWidget)
+    # What could not be made in time is made when it is asked for.
+    qtbot.waitUntil(lambda: len(form.findChildren(KnobWidget)) == len(form.fields))
+    assert displayed(form.knobs["rounds"]) == 7
+    qtbot.waitUntil(lambda: all(knob.isVisible() for knob in form.knobs.values()))
+    seen = []
+    for knob in form.knobs.values():
+        knob.set_context = seen.append
+    view.show_column(2, methods()["msg"], methods()["msg"].params())
+    # A hidden form holds no result.
+    assert seen == [None] * len(form.knobs)
+    assert not form.isVisible()
+    assert view.form is not form
+    view.show_column(1, STUB_METHOD, EveryParams(rounds=8))
+    view.show_scene("result")
+    assert view.form is form
+    assert seen[len(form.knobs) :] == ["result"] * len(form.knobs)
+    assert displayed(form.knobs["rounds"]) == 8
 
 
 def test_another_column_of_the_same_method_keeps_the_form(qtbot):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import shiboken6
 from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QContextMenuEvent, QWheelEvent
+from PySide6.QtGui import QContextMenuEvent, QGuiApplication, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
@@ -34,6 +34,11 @@ KEYS = [
 FORBIDDEN = {"action-quit", "action-another-window"}
 # A person does not do these every second, and each costs more than a hundred others.
 RARE = {"action-run-all", "action-batch", "action-failures", "action-four", "action-spectra"}
+
+
+def is_there(address: int) -> bool:
+    """Return whether a window of this address still exists: what Qt deletes by itself Python is not told."""
+    return any(shiboken6.getCppPointer(each)[0] == address for each in QGuiApplication.allWindows())
 
 
 class Hands:
@@ -135,12 +140,19 @@ class Hands:
     def press(self, front: QWidget, button: Qt.MouseButton, at: QPoint) -> None:
         handle = front.windowHandle()
         if handle is not None:
-            QTest.mouseClick(handle, button, NONE, at)
+            address = shiboken6.getCppPointer(handle)[0]
+            QTest.mousePress(handle, button, NONE, at)
+            # A press may close the window, and the release would be sent to what is no more.
+            if is_there(address):
+                QTest.mouseRelease(handle, button, NONE, at)
 
     def key(self, front: QWidget, key: Qt.Key, held: Qt.KeyboardModifier = NONE) -> None:
         handle = front.windowHandle()
         if handle is not None:
-            QTest.keyClick(handle, key, held)
+            address = shiboken6.getCppPointer(handle)[0]
+            QTest.keyPress(handle, key, held)
+            if is_there(address):
+                QTest.keyRelease(handle, key, held)
 
     # What hands do.
 
@@ -172,11 +184,14 @@ class Hands:
         if handle is None:
             return
         start = self.place(front)
+        address = shiboken6.getCppPointer(handle)[0]
         QTest.mousePress(handle, BUTTONS.LeftButton, NONE, start)
         for _ in range(3):
             start += QPoint(self.random.randint(-40, 40), self.random.randint(-30, 30))
-            self.move(front, start)
-        QTest.mouseRelease(handle, BUTTONS.LeftButton, NONE, start)
+            if is_there(address):
+                QTest.mouseMove(handle, start)
+        if is_there(address):
+            QTest.mouseRelease(handle, BUTTONS.LeftButton, NONE, start)
 
     def context_menu(self, front: QWidget) -> None:
         at = self.place(front)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import time
+from collections import deque
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -21,6 +24,9 @@ from texlab_core.errors import ParamError
 
 if TYPE_CHECKING:
     from texlab_core.engine.params import Field, Params
+
+# Of a frame's sixteen milliseconds, with room for laying out and painting what was made.
+PIECE_S = 0.004
 
 
 def tooltip(field: Field) -> str:
@@ -52,6 +58,13 @@ class WheelGuard(QObject):
 class ParameterForm(QWidget):
     """All knobs of one method.
 
+    Parameters
+    ----------
+    params_class
+        Whose knobs.
+    in_pieces
+        Whether the knobs come a few at a time from the event loop: all of them are more than a frame takes.
+
     ``edited(params, name, final)``: checked parameters in which the knob ``name`` was changed.
     ``refused(sentence)``: a combination that the parameters do not accept.
     """
@@ -60,12 +73,17 @@ class ParameterForm(QWidget):
     refused = Signal(str)
     dock_wanted = Signal(str)
 
-    def __init__(self, params_class: type[Params], parent: QWidget | None = None) -> None:
+    def __init__(
+        self, params_class: type[Params], parent: QWidget | None = None, *, in_pieces: bool = False
+    ) -> None:
         super().__init__(parent)
         self.setObjectName("parameter-form")
         self._params = params_class()
+        self._context: Any = None
         self.fields = {field.name: field for field in describe(params_class)}
-        self.knobs: dict[str, KnobWidget] = {}
+        self._coming = deque(self.fields.values())
+        self._group = ""
+        self._knobs: dict[str, KnobWidget] = {}
         self._labels: dict[str, Label] = {}
         self._resets: dict[str, QToolButton] = {}
         self._error_rows: dict[str, int] = {}
@@ -80,21 +98,45 @@ class ParameterForm(QWidget):
         self._layout.setContentsMargins(8, 4, 8, 8)
         self._layout.setVerticalSpacing(3)
         self._layout.setColumnStretch(0, 1)
-        group = ""
-        for field in self.fields.values():
-            if field.knob.group and field.knob.group != group:
-                group = field.knob.group
-                heading = Label(group)
-                heading.setProperty("role", "heading")
-                heading.setContentsMargins(0, 8, 0, 0)
-                self._layout.addWidget(heading, self._row, 0, 1, 2)
-                self._row += 1
-            self._add(field)
-        self._layout.addWidget(self._error, self._row, 0, 1, 2)
-        self._layout.setRowStretch(self._row + 1, 1)
         if not self.fields:
             self._layout.addWidget(Label("This method has no parameters."), 0, 0)
-        self.set_params(self._params)
+        self._growth = QTimer(self)
+        self._growth.timeout.connect(lambda: self._grow())
+        if in_pieces:
+            self._growth.start()
+        else:
+            self.complete()
+
+    @property
+    def knobs(self) -> dict[str, KnobWidget]:
+        """The knobs by the names of their parameters, every one of them."""
+        self.complete()
+        return self._knobs
+
+    def complete(self) -> None:
+        """Make the knobs that are still to come."""
+        self._grow(math.inf)
+
+    def _grow(self, seconds: float = PIECE_S) -> None:
+        end = time.perf_counter() + seconds
+        while self._coming and time.perf_counter() < end:
+            self._next()
+        if not self._coming:
+            self._growth.stop()
+
+    def _next(self) -> None:
+        field = self._coming.popleft()
+        if field.knob.group and field.knob.group != self._group:
+            self._group = field.knob.group
+            heading = Label(self._group)
+            heading.setProperty("role", "heading")
+            heading.setContentsMargins(0, 8, 0, 0)
+            self._layout.addWidget(heading, self._row, 0, 1, 2)
+            self._row += 1
+        self._add(field)
+        if not self._coming:
+            self._layout.addWidget(self._error, self._row, 0, 1, 2)
+            self._layout.setRowStretch(self._row + 1, 1)
 
     @property
     def params(self) -> Params:
@@ -105,18 +147,19 @@ class ParameterForm(QWidget):
         """Show parameters without emitting anything."""
         self._params = params
         self._error.hide()
-        for name, knob in self.knobs.items():
+        for name, knob in self._knobs.items():
             knob.set_value(getattr(params, name))
-        self._update_state()
+            self._update_state(name)
 
     def settle(self) -> None:
         """End what goes on, before another column is shown: it is emitted as final."""
-        for knob in self.knobs.values():
+        for knob in self._knobs.values():
             knob.settle()
 
     def set_context(self, context: Any) -> None:
         """Hand the chosen column's scene to the special editors."""
-        for knob in self.knobs.values():
+        self._context = context
+        for knob in self._knobs.values():
             knob.set_context(context)
 
     def _make_knob(self, field: Field) -> KnobWidget | None:
@@ -169,9 +212,12 @@ class ParameterForm(QWidget):
             self._layout.addWidget(knob, row + 1, 0, 1, 2)
         self._error_rows[field.name] = row + 2
         self._row = row + 3
-        self.knobs[field.name] = knob
+        self._knobs[field.name] = knob
         self._labels[field.name] = label
         self._resets[field.name] = reset
+        knob.set_value(getattr(self._params, field.name))
+        knob.set_context(self._context)
+        self._update_state(field.name)
         knob.edited.connect(lambda value, final: self._edit(field.name, value, final))
         knob.dock_wanted.connect(self.dock_wanted)
 
@@ -181,15 +227,16 @@ class ParameterForm(QWidget):
         except ParamError as error:
             self._show_error(name, str(error))
             self.refused.emit(str(error))
-            self.knobs[name].set_value(getattr(self._params, name))
+            self._knobs[name].set_value(getattr(self._params, name))
             return
         if params != self._params:
             # What was refused while dragging stays to be read after the release.
             self._error.hide()
         self._params = params
         if final:
-            self.knobs[name].set_value(getattr(params, name))
-        self._update_state()
+            self._knobs[name].set_value(getattr(params, name))
+        for each in self._knobs:
+            self._update_state(each)
         self.edited.emit(params, name, final)
 
     def _show_error(self, name: str, sentence: str) -> None:
@@ -199,11 +246,10 @@ class ParameterForm(QWidget):
         self._error.setText(sentence)
         self._error.show()
 
-    def _update_state(self) -> None:
-        for name, knob in self.knobs.items():
-            field = self.fields[name]
-            when = field.knob.when
-            useful = when is None or getattr(self._params, when[0]) in when[1]
-            knob.setEnabled(useful)
-            self._labels[name].setEnabled(useful)
-            self._resets[name].setVisible(getattr(self._params, name) != field.default)
+    def _update_state(self, name: str) -> None:
+        field = self.fields[name]
+        when = field.knob.when
+        useful = when is None or getattr(self._params, when[0]) in when[1]
+        self._knobs[name].setEnabled(useful)
+        self._labels[name].setEnabled(useful)
+        self._resets[name].setVisible(getattr(self._params, name) != field.default)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
@@ -60,6 +61,12 @@ class ParametersView(QWidget):
         layout.addWidget(self.presets)
         layout.addWidget(self.scroll_area, 1)
         layout.addLayout(buttons)
+        # One form a method, of which one is seen: making it costs more than a frame.
+        self._forms: dict[str, ParameterForm] = {}
+        pages = QWidget()
+        self._pages = QVBoxLayout(pages)
+        self._pages.setContentsMargins(0, 0, 0, 0)
+        self.scroll_area.setWidget(pages)
         self.form: ParameterForm | None = None
         # What which form was handed last.
         self._context: ColumnScene | None = None
@@ -70,7 +77,7 @@ class ParametersView(QWidget):
         self.help_button.clicked.connect(lambda: self.help_wanted.emit(self._method))
 
     def show_column(self, column_id: int, method: Method | None, params: Params | None) -> None:
-        """Show the form for a column; it is built anew only when the method differs."""
+        """Show the form for a column; the first time for a method its knobs come a few at a time."""
         if self.form is not None and column_id != self._column_id:
             self.form.settle()
         self._column_id = column_id
@@ -85,11 +92,12 @@ class ParametersView(QWidget):
             return
         self.title.setText(method.title)
         self.summary.setText(method.summary)
-        if method.id != self._method or self.form is None:
-            self._method = method.id
-            self._set_form(ParameterForm(method.params))
-        assert self.form is not None
-        self.form.set_params(params)
+        form = self._forms.get(method.id)
+        if form is None or not isinstance(params, type(form.params)):
+            form = self._make_form(method)
+        self._method = method.id
+        form.set_params(params)
+        self._set_form(form)
 
     def show_scene(self, scene: ColumnScene | None) -> None:
         """Hand the column's present result to the special editors."""
@@ -97,23 +105,36 @@ class ParametersView(QWidget):
             self._context, self._told = scene, self.form
             self.form.set_context(scene)
 
-    def _set_form(self, form: ParameterForm | None) -> None:
-        if self.form is not None:
-            # What is typed in it would be told, as the next column's, when it is hidden.
-            self.form.edited.disconnect()
-        self.form = form
-        old = self.scroll_area.takeWidget()
+    def _make_form(self, method: Method) -> ParameterForm:
+        form = ParameterForm(method.params, in_pieces=True)
+        form.hide()
+        form.dock_wanted.connect(self.dock_wanted)
+        form.edited.connect(partial(self._edit, form))
+        self._pages.addWidget(form)
+        old = self._forms.get(method.id)
         if old is not None:
             old.deleteLater()
-        # Without anything in it, the area would keep the scroll bar of what it had.
-        self.scroll_area.setWidget(form or QWidget())
-        if form is not None:
-            form.dock_wanted.connect(self.dock_wanted)
-            form.edited.connect(self._edit)
+        self._forms[method.id] = form
+        return form
 
-    def _edit(self, params: Params, name: str, final: bool) -> None:
-        self.intention.emit(EditParams(self._column_id, params, name, final))
+    def _set_form(self, form: ParameterForm | None) -> None:
+        old, self.form = self.form, form
+        if old is form:
+            return
+        if old is not None:
+            # The results that its editors show beside their values are not held behind the scenes.
+            old.set_context(None)
+            old.hide()
+        self._told = None
+        if form is not None:
+            form.show()
+        self.scroll_area.verticalScrollBar().setValue(0)
+
+    def _edit(self, form: ParameterForm, params: Params, name: str, final: bool) -> None:
+        # What is typed in a form is told once more when it is hidden: that would be another column's.
+        if form is self.form:
+            self.intention.emit(EditParams(self._column_id, params, name, final))
 
     def _reset(self) -> None:
         if self.form is not None:
-            self._edit(type(self.form.params)(), "reset all", True)
+            self._edit(self.form, type(self.form.params)(), "reset all", True)
