@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
 
+from texlab_core.findings.registry import detectors
 from texlab_core.measures.registry import find_measure
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab
+    from texlab_core.findings.registry import Case, Seen
 
 LABELS = Path(__file__).parents[1] / "data/labels/gallery"
 GRAVEL = LABELS / "stochastic-gravel.exemplar.webp"
@@ -41,6 +44,27 @@ def test_for_people(texlab: Texlab) -> None:
     for word in ("Look at:", "Structure lost", "where: ", "why: ", "try: "):
         assert word in text
     assert max(map(len, rest)) <= 100
+
+
+def test_what_was_not_looked_for_is_said(texlab: Texlab, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert json.loads(texlab("diagnose", GRAVEL, BROKEN, "--json").out)["unexamined"] is None
+    with Image.open(BROKEN) as broken:
+        broken.crop((0, 0, 30, 40)).save("small.png")
+    small = texlab("diagnose", GRAVEL, "small.png")
+    said = "Nothing is looked for where the result or the exemplar is under 32 pixels."
+    assert said in small.out
+    answer = json.loads(texlab("diagnose", GRAVEL, "small.png", "--json").out)
+    assert (answer["findings"], answer["unexamined"]) == ([], said)
+
+    def breaks(case: Case) -> Seen:
+        raise ZeroDivisionError
+
+    spoiled = {name: replace(detectors()[name], see=breaks) for name in ("cuts", "structure-lost")}
+    monkeypatch.setattr("texlab_core.findings.registry.detectors", lambda: spoiled)
+    answer = json.loads(texlab("diagnose", GRAVEL, BROKEN, "--json").out)
+    titles = ", ".join(each.title for each in spoiled.values())
+    said = f"Not looked for, since these detectors failed: {titles}. The log says why."
+    assert (answer["findings"], answer["unexamined"]) == ([], said)
 
 
 def test_a_result_knows_its_method_and_carries_its_exemplar(texlab: Texlab) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from tests.gui.dock_scenes import column_of
 from texlab.columns.status import details, figures, numbers_of, status_parts
+from texlab.docks.findings.words import nothing_to_list
 from texlab.runs.column_run import SOLID, ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
@@ -106,6 +107,12 @@ def test_a_measure_that_fails_leaves_the_picture_as_it_is(monkeypatch, caplog):
     assert isinstance(found, Measured)
     assert found.measures.keys() == whole.measures.keys() - {"visual-difference"}
     assert found.findings == whole.findings[1:]
+    title = whole.findings[0].title
+    assert found.unexamined == f"Not looked for, since this detector failed: {title}. The log says why."
+    # Nobody says that nothing is wrong where nobody could look.
+    shown = {"findings": (), "unexamined": found.unexamined, "measures": found.measures}
+    column = dataclasses.replace(column_of(result.image, title="Stub"), **shown)
+    assert nothing_to_list(column) == f"Nothing was found in the result of Stub. {found.unexamined}"
     assert "The measure visual-difference of texlab failed; it is left out." in caplog.text
     assert f"The detector {whole.findings[0].id} of texlab failed; it is left out." in caplog.text
     assert "TypeError" in caplog.text

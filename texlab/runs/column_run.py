@@ -170,7 +170,8 @@ class ColumnRun:
 class Measured:
     """Numbers about the picture that is shown, by id, its height and width, and what is wrong with it.
 
-    ``findings`` is None while that was not looked into; ``unexamined`` says why it never will be.
+    ``findings`` is None while that was not looked into; ``unexamined`` says why it never will be, or what was left
+    out because its detector failed.
     """
 
     measures: Mapping[str, float]
@@ -191,7 +192,7 @@ class MeasureRun:
 
     def __call__(self, task: TaskLike) -> Measured:
         """Measure, reporting the quick numbers first."""
-        from texlab_core.findings.registry import find_all, unexamined
+        from texlab_core.findings.registry import examine
         from texlab_core.measures.registry import measure_all, measure_quick, measures
         from texlab_core.measures.subject import Subject
 
@@ -212,8 +213,12 @@ class MeasureRun:
         task.progress(Measured(dict(found), size))
         if self.result is None:
             return Measured(found, size)
-        why = SOLID if self.result.volume is not None else unexamined(subject)
-        return Measured(found, size, None if why else find_all(subject, self.result.job.params), why)
+        if self.result.volume is not None:
+            return Measured(found, size, None, SOLID)
+        examined = examine(subject, self.result.job.params)
+        # Where nothing at all was looked for there are no findings, not even none.
+        nothing = bool(examined.why) and not examined.failed
+        return Measured(found, size, None if nothing else examined.findings, examined.why)
 
 
 def with_exemplar(exemplar: ImageInput, inputs: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

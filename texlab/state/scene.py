@@ -111,7 +111,7 @@ class ColumnScene:
     findings
         What is wrong with the finished picture; None until that was looked into.
     unexamined
-        Why that cannot be looked into, one sentence; empty where it is, or will be.
+        Why that cannot be looked into, or some of it, one sentence; empty where it is, or will be.
     measured_size
         Height and width of the picture that they are about.
     elapsed_s

@@ -10,7 +10,7 @@ from texlab_core.documents.reading import read_recipe
 from texlab_core.engine.inputs import ImageInput
 from texlab_core.errors import InputError, NoRecipeError, RecipeError
 from texlab_core.findings.finding import counted
-from texlab_core.findings.registry import find_all
+from texlab_core.findings.registry import examine, find_all
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.registry import measure_all
 from texlab_core.measures.subject import Subject, stopping
@@ -40,6 +40,8 @@ class Diagnosis:
         Numbers by id.
     findings
         What is wrong, certain things first.
+    unexamined
+        Why something was not looked for, one sentence; empty where everything was.
     """
 
     exemplar: ImageInput
@@ -47,6 +49,7 @@ class Diagnosis:
     params: Params | None
     measures: Mapping[str, float]
     findings: tuple[Finding, ...]
+    unexamined: str = ""
 
     def to_json(self) -> dict[str, Any]:
         """Return everything as JSON data."""
@@ -63,6 +66,7 @@ class Diagnosis:
             "measures": {name: value if math.isfinite(value) else None for name, value in self.measures.items()},
             "findings": [each.to_json() for each in self.findings],
             "counts": {"findings": sure, "look_at": hints},
+            "unexamined": self.unexamined or None,
         }
 
 
@@ -98,12 +102,14 @@ def diagnose(
     shown = as_exemplar(picture, should_stop=should_stop)
     method, params = ("", None) if recipe is None else (recipe.method, recipe.params)
     subject = Subject(image=shown.pixels, exemplar=against, method=method, look=look)
+    measured, examined = measure_all(subject), examine(subject, params)
     return Diagnosis(
         exemplar=against,
         method=method,
         params=params,
-        measures=measure_all(subject),
-        findings=find_all(subject, params),
+        measures=measured,
+        findings=examined.findings,
+        unexamined=examined.why,
     )
 
 

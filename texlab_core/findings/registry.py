@@ -203,20 +203,29 @@ def unexamined(subject: Subject) -> str:
     return ""
 
 
-def _tried(detector: Detector, case: Case) -> Finding | None:
-    try:
-        return detector.examine(case)
-    except Cancelled:
-        raise
-    except Exception:
-        log.exception("The detector %s of %s failed; it is left out.", detector.id, detector.package)
-        return None
+@dataclass(frozen=True)
+class Examined:
+    """What came of looking at a result.
+
+    Parameters
+    ----------
+    findings
+        Everything that is wrong, the certain things first, then hints, each in their order.
+    why
+        Why something was not looked for, one sentence; empty where everything was.
+    failed
+        Ids of the detectors that broke.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    why: str = ""
+    failed: tuple[str, ...] = ()
 
 
-def find_all(subject: Subject, params: Params | None = None, method: str | None = None) -> tuple[Finding, ...]:
-    """Return everything that is wrong with a result, the certain things first, then hints, each in their order.
+def examine(subject: Subject, params: Params | None = None, method: str | None = None) -> Examined:
+    """Look for everything that can be wrong with a result.
 
-    A detector that fails is left out, which is logged.
+    A detector that fails is left out, which is logged and said.
 
     Parameters
     ----------
@@ -232,13 +241,35 @@ def find_all(subject: Subject, params: Params | None = None, method: str | None 
     Cancelled
         When ``subject.look`` says so.
     """
-    if unexamined(subject):
-        return ()
+    why = unexamined(subject)
+    if why:
+        return Examined(why=why)
     case = Case(subject, subject.method if method is None else method, params)
-    found = []
+    found: list[Finding] = []
+    failed: list[Detector] = []
     for each in detectors().values():
         subject.look()
-        finding = _tried(each, case)
-        if finding is not None:
-            found.append(finding)
-    return tuple(sorted(found, key=lambda finding: finding.certainty == LOOK_AT))
+        try:
+            finding = each.examine(case)
+        except Cancelled:
+            raise
+        except Exception:
+            log.exception("The detector %s of %s failed; it is left out.", each.id, each.package)
+            failed.append(each)
+        else:
+            found += [] if finding is None else [finding]
+    found.sort(key=lambda finding: finding.certainty == LOOK_AT)
+    return Examined(tuple(found), _left_out(failed), tuple(each.id for each in failed))
+
+
+def _left_out(failed: list[Detector]) -> str:
+    if not failed:
+        return ""
+    names = ", ".join(each.title for each in failed)
+    several = "these detectors" if len(failed) > 1 else "this detector"
+    return f"Not looked for, since {several} failed: {names}. The log says why."
+
+
+def find_all(subject: Subject, params: Params | None = None, method: str | None = None) -> tuple[Finding, ...]:
+    """Return the findings of :func:`examine`, without what could not be looked for."""
+    return examine(subject, params, method).findings

@@ -61,6 +61,8 @@ def described(picture: str, found: Diagnosis) -> list[str]:
     lines = [f"{picture} against {found.exemplar.name}{by}: {amount(sure, hints)}."]
     shown = [each.id for each in measures().values() if each.live and not each.part_of]
     lines.append("  " + ", ".join(written(found.measures, shown)))
+    if found.unexamined:
+        lines += textwrap.wrap(found.unexamined, WIDTH, initial_indent="  ", subsequent_indent="  ")
     for certainty, title in ((FINDING, "Findings"), ("look at", "Look at")):
         chosen = [each for each in found.findings if each.certainty == certainty]
         if chosen:

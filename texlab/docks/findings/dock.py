@@ -101,7 +101,10 @@ class FindingsDock(FramedDock):
     def show_scene(self, scene: Scene) -> None:
         """Show numbers before and after as far as they are there."""
         self._column = scene.selected
-        self.outcome.setText(before_and_after(self._tried, scene.columns))
+        said = [before_and_after(self._tried, scene.columns)]
+        if self._column is not None and self._column.findings:
+            said.append(self._column.unexamined)
+        self.outcome.setText("\n".join(filter(None, said)))
         self.outcome.setVisible(bool(self.outcome.text()))
 
     def question(self, scene: Scene) -> Question | None:

@@ -48,7 +48,8 @@ class Tried:
 def nothing_to_list(column: ColumnScene) -> str:
     """Return why there is no finding of a finished column: nothing is wrong, or nobody has looked."""
     if column.findings is not None and column.measures and not column.draft:
-        return f"Nothing was found in the result of {column.title}."
+        said = f"Nothing was found in the result of {column.title}."
+        return f"{said} {column.unexamined}".rstrip()
     return column.unexamined or f"The result of {column.title} is not examined yet."
 
 
