@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench soak bar tuned kill calibrate wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench soak bar tuned report kill calibrate wheel sdist docs lock bits icons program screenshot clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -39,6 +39,10 @@ bar: .venv/.ready-run
 # Whether what the tuner finds has a larger V at no larger D than the defaults; takes most of an hour.
 tuned: .venv/.ready-run
 	@$(PY) -m texlab_core.figures._tuned
+
+# The report that the help opens: forty of De Bonet's 800 textures in one page.
+report: .venv/.ready-run
+	@$(PY) -m texlab_core.figures._report resources/help/reports/de-bonet-800.html
 
 # A batch of 400 jobs killed at 20 random moments, and on a cluster that loses workers: the same files?
 kill: .venv/.ready-test

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import re
 from pathlib import Path
@@ -12,7 +13,7 @@ from PIL import Image
 
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
-from texlab_core.figures import encode, figures
+from texlab_core.figures import _report, encode, figures
 from texlab_core.files.resources import resource
 from texlab_core.lessons.shelf import bundled
 
@@ -26,6 +27,7 @@ OURS = {
     "uncoded", "car", "ac-h", "tiling", "pixels", "bands",
 }  # fmt: skip
 FIGURES = {entry.name: entry for entry in resource("help/figures").iterdir()}
+REPORTS = {entry.name.removesuffix(".html"): entry for entry in resource("help/reports").iterdir()}
 LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
 page_named = pytest.mark.parametrize("page", sorted(PAGES))
 
@@ -42,6 +44,8 @@ def test_every_link_leads_somewhere(page):
             assert knob in {each.name for each in describe(methods()[method].params)}, target
         elif target.startswith("lesson:"):
             assert target[7:] in bundled(), target
+        elif target.startswith("report:"):
+            assert target[7:] in REPORTS, target
         else:
             assert target.endswith(".md")
             assert target[:-3] in PAGES, target
@@ -130,6 +134,43 @@ def test_figures_are_redrawn_as_they_are_stored(figure):
     stored, stored_size = blocks(io.BytesIO(FIGURES[figure.file].read_bytes()))
     assert size == stored_size
     assert np.abs(drawn - stored).mean() < 8
+
+
+def test_the_reports_are_those_that_are_linked():
+    assert set(REPORTS) == {target[7:] for page in PAGES for target in links(page) if target.startswith("report:")}
+
+
+def rows_of(report):
+    """Return the rows of a report: their cells without pictures by their titles, and their pictures."""
+    found = {}
+    for row in re.findall(r"<tr data-state.*?</tr>", report):
+        pictures = [base64.b64decode(each) for each in re.findall(r'src="data:image/webp;base64,([^"]*)"', row)]
+        (title,) = re.findall(r'alt="(.*?, seed 1)"', row)
+        found[title] = re.findall(r"<td[^>]*>(.*?)</td>", row)[2:], pictures
+    return found
+
+
+def test_the_report_of_the_help_is_what_its_module_makes(tmp_path):
+    """Two of the forty are made again; pictures are compared by blocks, as those of figures are."""
+    text = REPORTS["de-bonet-800"].read_text("utf-8")
+    assert len(text) < 500_000
+    # Nothing but itself: no file beside it, no address.
+    assert set(re.findall(r'(?:src|href)="(?!data:image/webp;base64,)([^"]*)"', text)) == set()
+    assert "http" not in re.sub(r'"data:[^"]*"', "", text).replace("http-equiv", "")
+    stored = rows_of(text)
+    assert len(stored) == 40
+    made = rows_of(_report.report(tmp_path / "batch", sample=2).decode())
+    assert len(made) == 2
+    for title, (cells, pictures) in made.items():
+        there, kept = stored[title]
+        assert cells[:4] == there[:4]
+        assert len(cells) == len(there)
+        assert len(pictures) == 2
+        for drawn, picture in zip(pictures, kept, strict=True):
+            (one, size), (other, other_size) = blocks(io.BytesIO(drawn)), blocks(io.BytesIO(picture))
+            assert size == other_size
+            assert np.abs(one - other).mean() < 8
+    assert _report.main([str(tmp_path / "report.html"), "--batch", str(tmp_path / "no" / "batch")]) == 2
 
 
 def test_the_command_draws_what_was_asked_for(tmp_path, monkeypatch, capsys):

@@ -15,7 +15,7 @@ from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.methods.heeger_bergen.analysis import analyze
+from texlab_core.methods.heeger_bergen.analysis import analyze, band_keys
 from texlab_core.methods.solid.rounds import CUTS
 from texlab_core.methods.solid.slices import SlicePlan, match_slices
 from texlab_core.methods.solid.synthesis import SETTLED
@@ -86,6 +86,56 @@ def test_bands_of_even_grain_come_nearer_or_settle(name: str) -> None:
     means = result.curves["mean-distance"].y
     assert (np.diff(means) < 0).all()
     assert means[-1] < means[0] / 3
+
+
+def half_gray(name: str) -> ImageInput:
+    return as_exemplar(as_exemplar(f"gallery:{name}", scale=0.5).pixels.mean(axis=-1))
+
+
+# Over the gallery the only bands that end farther away after five rounds than they began.
+CLIMBING = {"quasiperiodic-knit": "l2", "manmade-ribs": "l3", "inhomogeneous-litbrick": "l3"}
+
+
+@pytest.mark.parametrize(("name", "band"), CLIMBING.items())
+def test_bands_that_climb_at_first_fall_from_the_fourth_round_on(name: str, band: str) -> None:
+    result = make(half_gray(name), (64, 64, 64), iterations=8)
+    values = result.curves[f"band-{band}"].y
+    assert values[0] < values[4]
+    assert (np.diff(values[4:]) < 0).all()
+    others = [curve.y for key, curve in result.curves.items() if key not in (f"band-{band}", "mean-distance")]
+    assert all(each[-1] < each[0] for each in others)
+    # None of the other bands begins so near.
+    assert values[0] < 0.75
+
+
+@pytest.mark.parametrize(
+    ("name", "level", "low", "high"),
+    [
+        ("quasiperiodic-knit", 2, 1.3, 2.0),
+        ("inhomogeneous-litbrick", 3, 0.7, 1.1),
+        ("structured-pebbles", 2, 0.1, 0.35),
+        ("stochastic-granite", 3, 0.1, 0.35),
+    ],
+)
+def test_what_neighbours_put_into_a_band(name: str, level: int, low: float, high: float) -> None:
+    """Coefficients in random order, one band at a time: their power in a band, over what it should have."""
+    from texlab_core.transforms import solid_laplacian
+
+    with crew() as team:
+        model = finish(analyze(half_gray(name).pixels, "laplacian", 4, 4, "reflect", team)).planes[0]
+    targets = [model.bands[key].sample for key in band_keys("laplacian", 4, 0)]
+    shapes = [each.shape for each in finish(solid_laplacian.build(np.zeros((48, 48, 48), np.float32), 4))]
+    rng = np.random.Generator(np.random.PCG64(0))
+    power = 0.0
+    for place, target in enumerate(targets):
+        if place == level:
+            continue
+        bands = [np.zeros(shape, np.float32) for shape in shapes]
+        bands[place][:] = rng.choice(target, size=shapes[place])
+        bands[place] -= bands[place].mean()
+        volume = finish(solid_laplacian.collapse(bands))
+        power += float(finish(solid_laplacian.build(volume, 4))[level].var())
+    assert low < np.sqrt(power / targets[level].var()) < high
 
 
 def test_an_exemplar_with_a_direction_says_that_no_solid_has_it() -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import zipfile
+from pathlib import Path
+
 import pytest
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QTextDocument
 
 from texlab.docks import dock_classes
+from texlab.window import help_window
 from texlab.window.commands import COMMANDS
 from texlab.window.help_window import ORDER, HelpWindow, help_pages
 from texlab_core.files.resources import resource
@@ -67,6 +71,34 @@ def test_links_to_lessons_open_them(window, qtbot):
     with qtbot.waitSignal(window.lesson_wanted) as wanted:
         window.browser.anchorClicked.emit(QUrl("lesson:heeger-bergen"))
     assert wanted.args == ["heeger-bergen"]
+
+
+@pytest.mark.parametrize("packed", [False, True], ids=["in a folder", "in an archive"])
+def test_links_to_reports_open_them_in_the_browser(window, qtbot, monkeypatch, tmp_path, packed):
+    opened = []
+    monkeypatch.setattr(help_window.QDesktopServices, "openUrl", lambda url: opened.append(url) or len(opened) > 1)
+    own = resource("help/reports/de-bonet-800.html")
+    if packed:
+        archive = tmp_path / "program.zip"
+        with zipfile.ZipFile(archive, "w") as file:
+            file.write(own, "de-bonet-800.html")
+        monkeypatch.setattr(help_window, "resource", lambda path: zipfile.Path(archive, path.rpartition("/")[2]))
+        monkeypatch.setattr(help_window.tempfile, "mkdtemp", lambda prefix: str(tmp_path))
+    window.browser.anchorClicked.emit(QUrl("report:de-bonet-800"))
+    qtbot.waitUntil(lambda: len(opened) == 1)
+    path = Path(opened[0].toLocalFile())
+    assert path.read_bytes() == own.read_bytes()
+    # The first time there was no browser.
+    assert window.note.text() == f"No browser was found for {path}."
+    window.browser.anchorClicked.emit(QUrl("report:de-bonet-800"))
+    qtbot.waitUntil(lambda: len(opened) == 2)
+
+
+def test_a_report_that_is_missing_is_said(window, qtbot):
+    window.browser.anchorClicked.emit(QUrl("report:../window"))
+    assert not window.errands.busy
+    window.browser.anchorClicked.emit(QUrl("report:no-such"))
+    qtbot.waitUntil(lambda: "no-such" in window.note.text() and not window.errands.busy)
 
 
 def test_every_page_has_a_place_in_the_list():

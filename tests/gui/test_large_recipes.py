@@ -1,4 +1,4 @@
-"""A file from outside that asks for much says so and waits; what the user asks for starts."""
+"""What asks for much says so and waits, from a file or as a solid; what the user asks for starts."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from texlab.app.explorer import Explorer
@@ -60,3 +61,44 @@ def test_an_ordinary_recipe_starts_by_itself(qtbot: Any, explorer: Explorer, rec
             and explorer.controller.column_scene(chosen).status == "finished"
         )
     )
+
+
+def test_a_solid_that_takes_long_waits_until_it_is_asked_for(
+    qtbot: Any, open_window: Callable[..., Explorer], texture: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solid = methods()["solid"]
+    inputs, params = {"exemplar": as_exemplar(str(texture))}, solid.params(iterations=1)
+    small, large = (estimate.estimate_of(solid, inputs, params, (side, 8, 8)).seconds for side in (8, 12))
+    assert small is not None
+    assert large is not None
+    monkeypatch.setattr(estimate, "LARGE_SECONDS", (small + large) / 2)
+    explorer = open_window(str(texture), [("solid", params)], size=8)
+    controller, session = explorer.controller, explorer.session
+    column_id = session.selected_id
+
+    def status() -> str:
+        return controller.column_scene(column_id).status
+
+    def seen() -> tuple[str, Any]:
+        scene = controller.column_scene(column_id)
+        return scene.status, scene.size
+
+    assert seen() == ("finished", (8, 8, 8))
+    # Larger by typing: it waits, and says what it takes.
+    session.set_column_size(column_id, (12, 8, 8))
+    qtbot.waitUntil(lambda: seen() == ("idle", (12, 8, 8)))
+    scene = controller.column_scene(column_id)
+    assert scene.result is None
+    assert scene.message.startswith("8 x 8 x 12 needs about ")
+    assert scene.message.endswith("F5 runs it.")
+    explorer.window.actions_by_name["run"].trigger()
+    qtbot.waitUntil(lambda: seen() == ("finished", (12, 8, 8)))
+    # As much was asked for: another seed starts, more rounds wait again.
+    session.set_seed(5)
+    qtbot.waitUntil(lambda: status() == "finished" and controller.column_scene(column_id).result.job.seed == 5)
+    session.set_params(column_id, solid.params(iterations=2), "iterations")
+    qtbot.waitUntil(lambda: status() == "idle")
+    assert controller.column_scene(column_id).message.endswith("F5 runs it.")
+    # One step back there is a finished one, which takes nothing.
+    session.undo()
+    qtbot.waitUntil(lambda: status() == "finished")

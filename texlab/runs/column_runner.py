@@ -244,10 +244,15 @@ class ColumnRunner(QObject):
         self._stop_measuring()
         self._show(status="waiting" if coming else "idle", message="", result=None)
 
-    def hold(self, column: Column, sentence: str) -> None:
+    def has_finished(self, column: Column, state: State, exemplar: ImageInput) -> bool:
+        """Return whether the result of this very job is still there."""
+        return self._shared.kept.get(key_of(column, state, exemplar)) is not None
+
+    def hold(self, column: Column, size: tuple[int, ...], sentence: str) -> None:
         """Take a column's settings, and say what its run would take; it starts when the user asks for it."""
         self.worker.cancel()
         self._stop_measuring()
+        self._full = size
         self._announce(column, small=False)
         self._show(status="idle", message=sentence, result=None, draft=False)
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from texlab.runs.column_run import with_exemplar
 from texlab.runs.column_runner import ColumnRunner, Shared
+from texlab.runs.consent import Consent
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
 from texlab.runs.fill_runner import FillRunner
@@ -23,9 +23,7 @@ from texlab.state.difference import difference
 from texlab.state.lesson_scene import NO_LESSON
 from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab_core.engine.cache import AnalysisCache
-from texlab_core.engine.estimate import estimate_of, in_words, is_large
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.sizes import size_text
 from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
@@ -34,7 +32,7 @@ if TYPE_CHECKING:
     from texlab.state.filling import FillPlan
     from texlab.state.lesson_scene import LessonScene
     from texlab.state.scene import Frame
-    from texlab.state.session import Column, Sample, Session, State
+    from texlab.state.session import Sample, Session, State
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Picture
@@ -71,8 +69,7 @@ class Controller(QObject):
         self._leaving: list[ColumnRunner] = []
         self._dragging = False
         self._cropping = False
-        # Large jobs that came with a file from outside wait for the user.
-        self._ask_first = False
+        self._consent = Consent()
         self._probe: Probe | None = None
         self._stage: tuple[int, Frame] | None = None
         self._lesson = NO_LESSON
@@ -295,23 +292,24 @@ class Controller(QObject):
 
     def ask_first(self) -> None:
         """Let large jobs wait for the user, until they ask for one: what comes next is from a file."""
-        self._ask_first = True
+        self._consent.ask_first()
 
     def run_column(self, column_id: int) -> None:
         """Run a column at full size, however large."""
-        self._ask_first = False
+        self._allow(column_id)
         self._start(column_id, alone=True)
 
     def go_on(self, column_id: int) -> None:
         """Go on from where a column was stopped or had finished, also at a larger size."""
         runner = self._runners.get(column_id)
         if runner is not None and runner.resumable:
+            self._allow(column_id)
             self._start(column_id, go_on=True, alone=True)
 
     def run_all(self) -> None:
         """Run every column, however large."""
-        self._ask_first = False
         for column in self.session.state.columns:
+            self._allow(column.id)
             self._start(column.id)
 
     def stop_column(self, column_id: int) -> None:
@@ -389,6 +387,7 @@ class Controller(QObject):
     def _session_changed(self, before: State, after: State) -> None:
         changes = difference(before, after)
         for column_id in changes.removed:
+            self._consent.forget(column_id)
             self._let_go(self._runners.pop(column_id))
         for column_id in changes.added:
             self._add_runner(column_id)
@@ -444,19 +443,18 @@ class Controller(QObject):
         exemplar = self.exemplar
         if runner is None or column is None or exemplar is None or (self._preparation.busy and not draft):
             return
-        large = self._what_it_takes(column, exemplar) if self._ask_first and not draft else ""
-        if large:
-            runner.hold(column, large)
+        size = self.session.state.size_of(column)
+        large = "" if draft else self._consent.question(column, exemplar, size)
+        if large and not runner.has_finished(column, self.session.state, exemplar):
+            runner.hold(column, size, large)
             return
         runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone)
 
-    def _what_it_takes(self, column: Column, exemplar: ImageInput) -> str:
-        """Return the sentence that asks before a large job starts; empty for any other."""
-        method, size = find_method(column.method), self.session.state.size_of(column)
-        expected = estimate_of(method, with_exemplar(exemplar, column.inputs), column.params, size)
-        if not is_large(expected, size):
-            return ""
-        return f"{size_text(size)} needs {in_words(expected)}; F5 runs it."
+    def _allow(self, column_id: int) -> None:
+        """Let a column start however large: the user has asked for it."""
+        column = self.session.state.column(column_id)
+        if column is not None:
+            self._consent.give(column, self.exemplar, self.session.state.size_of(column))
 
     # Loading.
 

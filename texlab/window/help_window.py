@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, QUrl, Signal
-from PySide6.QtGui import QImage, QKeySequence, QPalette, QShortcut, QTextCursor, QTextDocument, QTextFormat
+from PySide6.QtGui import (
+    QDesktopServices,
+    QImage,
+    QKeySequence,
+    QPalette,
+    QShortcut,
+    QTextCursor,
+    QTextDocument,
+    QTextFormat,
+)
 from PySide6.QtWidgets import (
     QDialog,
     QHBoxLayout,
@@ -24,6 +36,7 @@ from texlab.window.generated_help import method_page
 from texlab.window.help_search import Section, search, sections_of
 from texlab_core.engine.registry import methods
 from texlab_core.files.resources import resource
+from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QKeyEvent, QShowEvent
@@ -49,6 +62,7 @@ class HelpBrowser(QTextBrowser):
 
     knob_wanted = Signal(str, str)
     lesson_wanted = Signal(str)
+    report_wanted = Signal(str)
     page_shown = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -150,6 +164,8 @@ class HelpBrowser(QTextBrowser):
             self.knob_wanted.emit(method, knob)
         elif text.startswith("lesson:"):
             self.lesson_wanted.emit(text[7:])
+        elif re.fullmatch(r"report:[\w-]+", text):
+            self.report_wanted.emit(text[7:])
         elif text.endswith(".md") and "/" not in text:
             self.show_page(text[:-3])
         elif text.startswith("#"):
@@ -185,6 +201,7 @@ class HelpWindow(QDialog):
         self.browser = HelpBrowser()
         self.browser.setAccessibleName("Page")
         self.errands = Errands(self)
+        self.errands.failed.connect(self._say)
         self._titles: list[tuple[str, str]] = []
         self._sections: dict[str, tuple[Section, ...]] = {}
         left = QVBoxLayout()
@@ -199,6 +216,7 @@ class HelpWindow(QDialog):
         self.list.currentItemChanged.connect(self._open)
         self.browser.knob_wanted.connect(self.knob_wanted)
         self.browser.lesson_wanted.connect(self.lesson_wanted)
+        self.browser.report_wanted.connect(self._open_report)
         self.browser.page_shown.connect(self._mark)
         for keys, do in (
             (QKeySequence(QKeySequence.StandardKey.Find), self._to_field),
@@ -289,6 +307,18 @@ class HelpWindow(QDialog):
         if item.data(HEADING):
             self.browser.go_to_heading(item.data(HEADING))
 
+    def _open_report(self, name: str) -> None:
+        """Open the report of a batch in the system's browser: it sorts and filters by a script."""
+        self.errands.run("report", lambda task: _report_file(name), self._show_report)
+
+    def _show_report(self, path: Path) -> None:
+        if not QDesktopServices.openUrl(QUrl.fromLocalFile(str(path))):
+            self._say(f"No browser was found for {path}.")
+
+    def _say(self, sentence: str) -> None:
+        self.note.setText(sentence)
+        self.note.show()
+
     def _to_field(self) -> None:
         self.field.setFocus(Qt.FocusReason.ShortcutFocusReason)
         self.field.selectAll()
@@ -307,6 +337,16 @@ def page_text(name: str) -> str | None:
         return resource(f"help/{name}.md").read_text(encoding="utf-8")
     except (OSError, ValueError):
         return method_page(methods()[name]) if name in methods() else None
+
+
+def _report_file(name: str) -> Path:
+    """Return the file of a report; a copy where the program's own lies inside an archive."""
+    found = resource(f"help/reports/{name}.html")
+    if isinstance(found, Path):
+        return found
+    copy = Path(tempfile.mkdtemp(prefix="texlab-")) / f"{name}.html"
+    write_whole(copy, found.read_bytes())
+    return copy
 
 
 def _read_pages(task: Task) -> dict[str, tuple[Section, ...]]:

@@ -11,7 +11,7 @@ from texlab_core.findings.finding import HINT
 from texlab_core.measures.registry import measures as known_measures
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from texlab_core.batch.rows import Row, Rows
 
@@ -81,7 +81,21 @@ filter();
 """
 
 
-def page_of(name: str, note: str, variants: Sequence[str], rows: Rows, total: int) -> Iterator[str]:
+_BESIDE = """The numbers are in <a href="report.csv">report.csv</a> too. Each picture carries its
+recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again."""
+
+
+def page_of(
+    name: str,
+    note: str,
+    variants: Sequence[str],
+    rows: Rows,
+    total: int,
+    *,
+    address: Callable[[str], str] = quote,
+    beside: str = _BESIDE,
+    links: bool = True,
+) -> Iterator[str]:
     """Yield the page in pieces.
 
     Parameters
@@ -94,6 +108,12 @@ def page_of(name: str, note: str, variants: Sequence[str], rows: Rows, total: in
         The jobs that are over.
     total
         How many jobs there will be.
+    address
+        Returns what a browser finds a small picture by, from its path in the batch's folder.
+    beside
+        What is said of the files beside the page, HTML.
+    links
+        Whether a small picture leads to the file of the whole one.
     """
     failed, measures = rows.failed, rows.measures
     counts = [f"{len(rows) - failed} of {total} textures"] + ([f"{failed} failed"] if failed else [])
@@ -105,8 +125,7 @@ def page_of(name: str, note: str, variants: Sequence[str], rows: Rows, total: in
     headers.append("<th><button>Findings</button></th>")
     yield page_head(name, _STYLE)
     yield f"""<p>{escape(note)}</p>
-<p>{", ".join(counts)}. The numbers are in <a href="report.csv">report.csv</a> too. Each picture carries its
-recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
+<p>{", ".join(counts)}. {beside}</p>
 <form hidden>
 <label>Search <input type="search" name="words" autocomplete="off"></label>
 <label>Method <select name="variant"><option value="">all</option>{options}</select></label>
@@ -120,7 +139,7 @@ recipe: <code>texlab redo PICTURE --out AGAIN.png</code> makes it again.</p>
 <tbody>
 """
     for row in rows:
-        yield _row(row, measures)
+        yield _row(row, measures, address, links)
     yield """</tbody>
 </table>
 """
@@ -141,14 +160,14 @@ def _written(name: str, value: float) -> str:
     return f"{value:.4g}" if measure is None else measure.text(value)
 
 
-def _row(row: Row, measures: Sequence[str]) -> str:
+def _row(row: Row, measures: Sequence[str], address: Callable[[str], str], links: bool) -> str:
     about = row.about
     state = "failed" if row.error else " ".join(["made", *_kinds(row.findings)])
     words = " ".join([row.title, row.error, *row.findings]).lower()
     part = f"<small>{escape(about['part'])}</small>" if about["part"] else ""
     cells = [
-        f"<td>{_image(row.exemplar)}</td>",
-        f"<td>{_image(row.thumbnail, row.picture, row.title)}</td>",
+        f"<td>{_image(row.exemplar, address)}</td>",
+        f"<td>{_image(row.thumbnail, address, row.picture if links else '', row.title)}</td>",
         f'<td data-value="{escape(about["input"])}">{escape(about["input"])}{part}</td>',
         f"<td>{escape(about['variant'])}</td>",
         f"<td>{escape(row.size)}</td>",
@@ -173,8 +192,8 @@ def _kinds(findings: Sequence[str]) -> list[str]:
     return ["found"] * (len(findings) > hints) + ["hinted"] * (hints > 0)
 
 
-def _image(path: str, link: str = "", title: str = "exemplar") -> str:
+def _image(path: str, address: Callable[[str], str], link: str = "", title: str = "exemplar") -> str:
     if not path:
         return ""
-    image = f'<img src="{quote(path)}" alt="{escape(title)}" loading="lazy">'
+    image = f'<img src="{address(path)}" alt="{escape(title)}" loading="lazy">'
     return f'<a href="{quote(link)}">{image}</a>' if link else image

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from texlab_core.figures import Figure
-from texlab_core.figures._tools import make, page, texture, title_of
+from texlab_core.figures._charts import Line, log_chart
+from texlab_core.figures._tools import PAGE_WIDTH, make, page, texture, title_of
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.sheets.contact_sheet import Tile
 from texlab_core.solids.pictures import middle, picture_of, slice_at
@@ -81,8 +82,31 @@ def objects() -> NDArray[np.uint8]:
     return page(tiles, 4)
 
 
+def rounds_of_bands() -> NDArray[np.uint8]:
+    """Show the bands of the gallery that climb before they fall, beside one that begins farther away."""
+    lines = []
+    for name, band in (
+        ("quasiperiodic-knit", "l2"),
+        ("inhomogeneous-litbrick", "l3"),
+        ("manmade-ribs", "l3"),
+        ("structured-pebbles", "l2"),
+    ):
+        half = as_exemplar(f"gallery:{name}", scale=0.5)
+        gray = as_exemplar(half.pixels.mean(axis=-1), name=name)
+        curve = make("solid", gray, SIDE, iterations=20).curves[f"band-{band}"]
+        lines.append(Line(f"{title_of(name)}, {band}", curve.x.tolist(), curve.y.tolist()))
+    return log_chart(
+        lines,
+        x_label="rounds",
+        y_label="distance of one band before matching (W1 / standard deviation)",
+        y_range=(0.02, 3.0),
+        size=(300, PAGE_WIDTH),
+    )
+
+
 FIGURES = (
     Figure("solid-slices.jpg", "Slices have the exemplar's colours and grain, not its shapes.", slices),
     Figure("solid-streaks.jpg", "Slices matched together, and one by one.", pooled_and_per_slice),
+    Figure("solid-bands.png", "Bands that climb for some rounds before they fall.", rounds_of_bands),
     Figure("solid-objects.jpg", "Cut from a solid, and wrapped in an image.", objects),
 )

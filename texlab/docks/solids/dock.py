@@ -214,7 +214,8 @@ class SolidsDock(FramedDock):
             return None
         result = self._solid_of(column)
         if result is None or result.volume is None:
-            self.why = column.message if column.status == "failed" else "The solid appears when it has been made."
+            waits = column.status in ("failed", "idle") and column.message
+            self.why = waits or "The solid appears when it has been made."
             return None
         self._result = result
         volume = result.volume
