@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -169,13 +170,48 @@ def test_what_is_under_the_pointer_follows_the_picture(bench: Bench) -> None:
     assert bench.window.pixel == ""
     bench.presenter.say_exemplar_pixel(19, 3)
     bench.presenter.show_scene(scene_of(bench.column))
-    assert bench.window.pixel.startswith("exemplar 3, 19")
+    assert bench.window.pixel.endswith("picture 3, 19")
+
+
+def test_a_pixel_without_a_value_has_none(bench: Bench) -> None:
+    image = noise(24, 32)
+    filled = np.zeros((24, 32), bool)
+    filled[:8] = True
+    done = bench.column
+    bench.column = replace(done, status="running", image=image, filled=filled)
+    bench.presenter.say_column_pixel(1, 9, 7)
+    assert bench.window.pixel == "7, 9   not filled yet"
+    bench.presenter.say_column_pixel(1, 7, 9)
+    red, green, blue = image[7, 9]
+    # The maps are those of the result before.
+    assert bench.window.pixel == f"9, 7   RGB {red:.3f} {green:.3f} {blue:.3f}"
+    bench.column = done
+    bench.presenter.show_scene(scene_of(bench.column))
+    assert "from exemplar 14, 5" in bench.window.pixel
+
+
+def test_a_pixel_that_was_kept_comes_from_nowhere(bench: Bench) -> None:
+    source = np.full((24, 32, 2), -1, np.int32)
+    bench.column = column_of(
+        noise(24, 32), method=HB.id, params=HB.params(), maps={"source": Map(source, "source", "Source")}
+    )
+    bench.presenter.say_column_pixel(1, 7, 9)
+    assert "from" not in bench.window.pixel
 
 
 def test_the_pixel_of_the_exemplar(bench: Bench) -> None:
     bench.presenter.say_exemplar_pixel(19, 3)
     red, green, blue = bench.source.pixels[19, 3]
-    assert bench.window.pixel == f"exemplar 3, 19   RGB {red:.3f} {green:.3f} {blue:.3f}"
+    value = f"RGB {red:.3f} {green:.3f} {blue:.3f}"
+    assert bench.window.pixel == f"outside the crop   {value}   picture 3, 19"
+    # The crop begins at 6, 4: methods, maps and tabs count from there.
+    bench.presenter.say_exemplar_pixel(9, 20)
+    red, green, blue = bench.prepared.exemplar.pixels[5, 14]
+    value = f"RGB {red:.3f} {green:.3f} {blue:.3f}"
+    assert bench.window.pixel == f"exemplar 14, 5   {value}   picture 20, 9"
+    bench.presenter._session = SimpleNamespace(state=SimpleNamespace(sample=Sample(bench.source)))
+    bench.presenter.say_exemplar_pixel(9, 20)
+    assert bench.window.pixel == f"exemplar 20, 9   {value}"
     bench.presenter.say_exemplar_pixel(20, 3)
     assert bench.window.pixel == ""
 

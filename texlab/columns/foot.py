@@ -40,6 +40,7 @@ class Foot(QWidget):
 
     def __init__(self, name: str, parent: QWidget | None = None, *, has_figures: bool = True) -> None:
         super().__init__(parent)
+        self.setAccessibleName("About the picture")
         self._has_figures = has_figures
         self._words: Words = "below"
         self._shown: tuple[Figure, ...] = ()

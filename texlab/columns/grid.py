@@ -26,6 +26,7 @@ class Grid(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("grid")
+        self.setAccessibleName("Exemplar and columns")
         self.arrangement: Arrangement | None = None
         self._cells: tuple[ExemplarView | ColumnView, ...] = ()
         self.rows: Rows = "largest"

@@ -54,6 +54,7 @@ class HistoryPopup(QDialog):
     def __init__(self, scene: ColumnScene, exemplar: str, parent: QWidget | None = None) -> None:
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("history-popup")
+        self.setAccessibleName("Earlier results")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         # The newest first; those of another exemplar would be other textures.
         self._past = tuple(reversed([each for each in scene.history if each.exemplar == exemplar]))

@@ -42,6 +42,7 @@ class Magnifier(QWidget):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("magnifier")
+        self.setAccessibleName("Magnifier")
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.piece: Picture | None = None
         self._centre = (0, 0)

@@ -45,10 +45,12 @@ class NumbersPopup(QDialog):
     ) -> None:
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("numbers-popup")
+        self.setAccessibleName(f"Numbers of {title}")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         rows = rows_of(numbers_of(scene), before)
         self.table = QTableWidget(len(rows), len(HEADS), self)
         self.table.setObjectName("numbers-table")
+        self.table.setAccessibleName(f"Numbers of {title}")
         self.table.setHorizontalHeaderLabels(HEADS)
         make_quiet(self.table)
         self.table.verticalHeader().hide()

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from texlab.columns.titles import titles
 from texlab.docks.base import Question
@@ -19,6 +19,7 @@ from texlab.style.text_size import grow_with_text, text_scale
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.plain import Label, MarkupLabel, escaped, set_tip
 from texlab.widgets.plots import SERIES, Plot
+from texlab.widgets.slider import Slider
 from texlab_core.engine.steps import Curve
 
 if TYPE_CHECKING:
@@ -142,12 +143,12 @@ class ConvergenceDock(FramedDock):
         self.curve = self.add_choice("curve", "Curve", "Which curve to show for all columns", [], self.ask)
         self.log = self.add_switch("log", "Log", "Logarithmic distance", lambda _: self._redraw())
         self.log.setChecked(True)
-        self.iteration = QSlider(Qt.Orientation.Horizontal)
+        self.iteration = Slider("Heat map", self._said)
         grow_with_text(self.iteration, 120, self.iteration.setFixedWidth)
         self.iteration.setPageStep(1)
         self.iteration.valueChanged.connect(self._show_heat)
         tip = "Iteration that the heat map shows"
-        self.add_control(self.iteration, "iteration", "Iteration of the heat map", tip)
+        self.add_slider(self.iteration, "iteration", tip)
         self.iteration_label = Label("")
         self.add_control(self.iteration_label, "iteration-label", "Iteration of the heat map", tip)
         self.readout = self.add_readout()
@@ -285,13 +286,16 @@ class ConvergenceDock(FramedDock):
         ]
         self.legend.setText("&nbsp;&nbsp; ".join(words))
 
+    def _said(self, place: int) -> str:
+        return "" if self._heat is None else f"iteration {place} of {len(self._heat.values) - 1}"
+
     def _show_heat(self, *_: object) -> None:
         heat = self._heat
         if heat is None:
             return
         place = self.iteration.value()
-        last = len(heat.values) - 1
-        self.iteration_label.setText(f"iteration {place} of {last}")
+        self.iteration_label.setText(self._said(place))
+        self.iteration.tell()
         values = heat.values[place]
         # Colours from the best to the worst subband of this iteration; the curves tell how far all have come.
         logs = np.log(np.maximum(values, 1e-12))
@@ -302,6 +306,7 @@ class ConvergenceDock(FramedDock):
         chosen = self.curve.currentData()
         cells = [(r, c) for r, row in enumerate(heat.curves) for c, name in enumerate(row) if name == chosen]
         self.heat.select(cells[0] if cells else None)
+        self.tell_again()
 
     def _choose_cell(self, row: int, column: int) -> None:
         if self._heat is not None:
@@ -311,17 +316,22 @@ class ConvergenceDock(FramedDock):
                 self.ask()
 
     def _hover_cell(self, row: int, column: int) -> None:
-        if self._heat is None or row < 0:
-            self.readout.setText("")
-            return
+        self.readout.tell(partial(self._cell_words, row, column))
+
+    def _cell_words(self, row: int, column: int) -> str:
+        if self._heat is None or not (0 <= row < len(self._heat.rows) and column < len(self._heat.columns)):
+            return ""
         name = " ".join(part for part in (self._heat.rows[row], self._heat.columns[column]) if part)
         value = self._heat.values[self.iteration.value(), row, column]
-        self.readout.setText(f"{name}: {number(float(value))}")
+        return f"{name}: {number(float(value))}"
 
     def _hover_curve(self, x: float, _: float) -> None:
+        self.readout.tell(partial(self._curve_words, x))
+
+    def _curve_words(self, x: float) -> str:
         answer: ConvergenceAnswer | None = self.answer
         if answer is None:
-            return
+            return ""
         words = []
         places = answer.shown.x
         if places.size:
@@ -330,7 +340,7 @@ class ConvergenceDock(FramedDock):
             if curve.x.size:
                 nearest = int(np.argmin(np.abs(curve.x - x)))
                 words.append(f"{title} {number(float(curve.y[nearest]))}")
-        self.readout.setText(f"{answer.shown.x_label} {x:.0f}: " + ", ".join(words))
+        return f"{answer.shown.x_label} {x:.0f}: " + ", ".join(words)
 
 
 def _styles(count: int) -> list[tuple[Any, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QPoint, QRect, Qt, QTimer
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -25,13 +25,14 @@ from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.picture_handle import PictureHandle
 from texlab.widgets.plain import Label, set_tip
-from texlab.widgets.readout import Readout
+from texlab.widgets.readout import MARGIN, Readout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
+    from texlab.widgets.slider import Slider
     from texlab_core.engine.steps import FloatImage
 
 
@@ -146,11 +147,17 @@ class FramedDock(Dock):
         self._stack.addWidget(self._message)
         self._stack.addWidget(self.body)
         pages.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        # Without controls the value under the cursor has a line of its own.
+        self._readout: Readout | None = None
+        self._told = Label(" ")
+        self._told.setMargin(2 * MARGIN)
+        self._told.hide()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self._fold)
         layout.addWidget(pages, 1)
+        layout.addWidget(self._told)
         self.build()
         tip = "Drag what this tab shows into a slide; a click copies it; Ctrl+Shift+S saves it"
         self.add_control(self.handle, "picture", "Picture of this tab", tip)
@@ -187,6 +194,11 @@ class FramedDock(Dock):
         self.stage_button.setText(f"Stage: {stage.name} ✕")
         return LookedAt(None, stage, exemplar.pixels.shape[2])
 
+    def tell_again(self) -> None:
+        """Say what is under the pointer now, after what is shown there has changed."""
+        if self._readout is not None:
+            self._readout.tell_again()
+
     def ask(self, *_: object) -> None:
         """Ask again because a control was changed."""
         self.asks.emit()
@@ -199,6 +211,7 @@ class FramedDock(Dock):
         self._mark_stale(False)
         self.show_body()
         self.show_answer(answer)
+        self.tell_again()
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, in one sentence."""
@@ -206,6 +219,7 @@ class FramedDock(Dock):
         self._mark_stale(False)
         self._message.setText(self.why or reason or self.empty)
         self._stack.setCurrentWidget(self._message)
+        self.tell_again()
 
     def present_waiting(self) -> None:
         """Say that the answer is under way; over an earlier one that is shown, once that has lasted a moment."""
@@ -234,6 +248,7 @@ class FramedDock(Dock):
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to the body, or show the controls again."""
         self._fold.setVisible(not folded)
+        self._told.setVisible(folded and self._readout is not None)
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""
@@ -258,6 +273,11 @@ class FramedDock(Dock):
         control.setAccessibleName(label if sum(map(str.isalpha, label)) > 1 else tip.split(";")[0])
         set_tip(control, tip)
         self._line.addWidget(control)
+
+    def add_slider(self, slider: Slider, name: str, tip: str) -> None:
+        """Put a slider into the line of controls; it names itself."""
+        said = slider.accessibleName()
+        self.add_control(slider, name, said, tip)
 
     def add_choice(
         self, name: str, label: str, tip: str, items: Iterable[tuple[str, Any]], changed: Callable[[], Any]
@@ -297,8 +317,13 @@ class FramedDock(Dock):
         return button
 
     def add_readout(self) -> Readout:
-        """Add the place where the value under the cursor is told, over the body's lower right corner."""
-        return Readout(f"{self.name}-readout", self.body)
+        """Add the place where the value under the cursor is told: over the controls, which nobody uses then."""
+        self._readout = Readout(f"{self.name}-readout", self, self._readout_room)
+        return self._readout
+
+    def _readout_room(self) -> QRect:
+        part = self._told if self._told.isVisible() else self.controls
+        return QRect(part.mapTo(self, QPoint()), part.size())
 
 
 def _themed(widget: QWidget) -> Iterator[Any]:

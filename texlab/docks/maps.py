@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QListWidget,
     QListWidgetItem,
-    QSlider,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
@@ -27,6 +26,7 @@ from texlab.style.text_size import grow_with_text
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar, pg
+from texlab.widgets.slider import Slider
 from texlab.widgets.tables import add_copying, list_text
 from texlab_core.engine.late_maps import map_titles
 
@@ -88,13 +88,13 @@ class MapsDock(FramedDock):
     def build(self) -> None:
         """Make the chooser, the picture and the legends."""
         self.chooser = self.add_choice("map", "Map", "Which map of the result to show", [], self.ask)
-        self.opacity = QSlider(Qt.Orientation.Horizontal)
+        self.opacity = Slider("Opacity of the map", lambda share: f"{share} %")
         self.opacity.setRange(0, 100)
         self.opacity.setValue(100)
         grow_with_text(self.opacity, 110, self.opacity.setFixedWidth)
         self.opacity.valueChanged.connect(self._show_overlay)
         tip = "How strongly the map covers the result: all the way left shows the result alone"
-        self.add_control(self.opacity, "opacity", "Opacity of the map", tip)
+        self.add_slider(self.opacity, "opacity", tip)
         self.readout = self.add_readout()
 
         self.pane = PicturePane("maps-pane", "Map over the result")

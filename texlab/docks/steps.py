@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, QTimer
@@ -14,6 +15,7 @@ from texlab.state.intentions import ShowStage
 from texlab.widgets.own_keys import is_plain
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label
+from texlab.widgets.slider import Slider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,13 +46,13 @@ class StepsDock(FramedDock):
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._advance)
         self.play = self.add_button("play", "Play", "Play the stages in a loop (Space)", self.toggle)
-        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider = Slider("Stage", self._said)
         self.slider.setMinimumWidth(180)
         self.slider.setPageStep(1)
         self.slider.setTickPosition(QSlider.TickPosition.TicksBelow)
         self.slider.valueChanged.connect(self._choose)
         self.slider.sliderPressed.connect(self.pause)
-        self.add_control(self.slider, "slider", "Stage", "Which stage to show (Left, Right, Home, End)")
+        self.add_slider(self.slider, "slider", "Which stage to show (Left, Right, Home, End)")
         self.speed = self.add_choice(
             "speed", "Speed", "How fast to play", [(text, rate) for rate, text in SPEEDS], self._take_speed
         )
@@ -164,6 +166,12 @@ class StepsDock(FramedDock):
             frame = self._frames[place]
             self.pane.set_picture(frame.picture)
             self.label.setText(f"{frame.name}   {place + 1} of {len(self._frames)}")
+            self.slider.tell()
+            self.tell_again()
+
+    def _said(self, place: int) -> str:
+        frames = self._frames
+        return f"{frames[place].name}, {place + 1} of {len(frames)}" if place < len(frames) else ""
 
     def _choose(self, place: int) -> None:
         """Show a stage here and in every other tab; the last one is the result itself."""
@@ -173,9 +181,11 @@ class StepsDock(FramedDock):
         self.intention.emit(ShowStage(self._column, self._stage))
 
     def _hover(self, row: int, column: int) -> None:
+        self.readout.tell(partial(self._value_words, row, column))
+
+    def _value_words(self, row: int, column: int) -> str:
         picture = self.pane.picture
-        if picture is None or row < 0:
-            self.readout.setText("")
-            return
+        if picture is None or not (0 <= row < picture.shape[0] and column < picture.shape[1]):
+            return ""
         numbers = " ".join(f"{value / 255:.3f}" for value in picture[row, column])
-        self.readout.setText(f"{column}, {row}   RGB {numbers}")
+        return f"{column}, {row}   RGB {numbers}"

@@ -78,6 +78,7 @@ class ParameterForm(QWidget):
     ) -> None:
         super().__init__(parent)
         self.setObjectName("parameter-form")
+        self.setAccessibleName("Parameters of the chosen column")
         self._params = params_class()
         self._context: Any = None
         self.fields = {field.name: field for field in describe(params_class)}

@@ -21,6 +21,7 @@ from texlab.style.text_size import grow_with_text
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import tip_text
 from texlab.widgets.settling import Settling
+from texlab.widgets.slider import Slider
 
 if TYPE_CHECKING:
     from texlab_core.engine.params import Field
@@ -68,15 +69,14 @@ class NumberKnob(KnobWidget):
         super().__init__(parent)
         self._field = field
         self._scale = Scale.of(field)
-        self._value: float = field.default
-        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self._value: Any = field.default
+        self.box: WholeBox | NumberBox = self._make_box(field)
+        self.slider = Slider(field.label, lambda _: self._said())
         self.slider.setObjectName(f"slider-{field.name}")
-        self.slider.setAccessibleName(field.label)
         self.slider.setRange(0, self._scale.positions)
         self.slider.setPageStep(max(1, self._scale.positions // 10))
         self.slider.setSingleStep(max(1, self._scale.positions // 100))
         self.slider.setMinimumWidth(60)
-        self.box: WholeBox | NumberBox = self._make_box(field)
         layout = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.slider, 0, 0)
@@ -119,12 +119,12 @@ class NumberKnob(KnobWidget):
                 self.slider.setValue(self._scale.position(value))
 
     def _take(self, value: Any) -> None:
-        """Keep a value, and let the slider say it: what a screen reader finds there is a position."""
         self._value = value
+        self.slider.tell()
+
+    def _said(self) -> str:
         unit = f" {self._field.knob.unit}" if self._field.knob.unit else ""
-        said = f"{self._field.label}: {self.box.textFromValue(value)}{unit}"
-        if said != self.slider.accessibleName():
-            self.slider.setAccessibleName(said)
+        return f"{self.box.textFromValue(self._value)}{unit}"
 
     def _typed(self, value: float) -> int | float:
         return round(value) if self._field.kind == "int" else float(value)

@@ -32,6 +32,7 @@ class ParametersView(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("parameters")
+        self.setAccessibleName("Parameters")
         self.title = Label()
         self.title.setObjectName("parameters-title")
         self.title.setProperty("role", "heading")

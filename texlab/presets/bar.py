@@ -33,6 +33,7 @@ class PresetBar(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("preset-bar")
+        self.setAccessibleName("Presets")
         self._presets: list[Preset] = []
         self._own: set[tuple[str, str]] = set()
         self.box = QComboBox()

@@ -17,6 +17,9 @@ from texlab_core.errors import Cancelled
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from texlab.state.session import Column, State
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
@@ -64,6 +67,7 @@ class Progress:
     image: FloatImage | None
     frames: tuple[Frame, ...]
     elapsed_s: float
+    filled: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -149,6 +153,7 @@ class ColumnRun:
             keep = step.frame is not None and not self.draft and kept < MAX_FRAME_BYTES
             image = step.preview() if step.preview is not None and (due or keep) else None
             picture = to_picture(image) if image is not None else None
+            filled = step.filled() if step.filled is not None and image is not None else None
             if keep and picture is not None and step.frame is not None:
                 kept += picture.nbytes
                 self.frames.append(Frame(step.frame, picture))
@@ -157,7 +162,7 @@ class ColumnRun:
                 elapsed = time.perf_counter() - start - away
                 message = step.stage or step.phase
                 task.progress(
-                    Progress(fraction, message, dict(metrics), picture, image, tuple(self.frames), elapsed)
+                    Progress(fraction, message, dict(metrics), picture, image, tuple(self.frames), elapsed, filled)
                 )
 
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)

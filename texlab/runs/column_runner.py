@@ -300,7 +300,7 @@ class ColumnRunner(QObject):
             "elapsed_s": report.elapsed_s,
         }
         if report.picture is not None:
-            changes |= {"picture": report.picture, "image": report.image}
+            changes |= {"picture": report.picture, "image": report.image, "filled": report.filled}
         self._show(**changes)
 
     def _finished(self, end: Finished | Drafted) -> None:
@@ -374,7 +374,7 @@ class ColumnRunner(QObject):
         status = "waiting" if behind and not self._live else "finished"
         self._live = self._live and behind
         if isinstance(end, Drafted):
-            shown = {"picture": end.picture, "image": end.image, "result": None, "draft": True}
+            shown = {"picture": end.picture, "image": end.image, "filled": None, "result": None, "draft": True}
             self._show(status=status, message="", findings=None, unexamined="", **shown)
             return
         # A draft tells as well how long the full size would take: the time grows with the number of samples.
@@ -389,6 +389,7 @@ class ColumnRunner(QObject):
             "fraction": 1.0,
             "picture": end.picture,
             "image": end.result.image,
+            "filled": None,
             "draft": end.draft and drawn < math.prod(self._full),
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,

@@ -18,6 +18,8 @@ from texlab.state.tuning import NO_TUNING, TuningScene
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
 
+    from numpy.typing import NDArray
+
     from texlab.state.sweeps import ShownCell
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput, Input
@@ -96,6 +98,8 @@ class ColumnScene:
         What is painted, (H, W, 3) uint8.
     image
         The same as values, (H, W, C) float32 in [0, 1]; a preview while the run goes on.
+    filled
+        Which pixels of a preview have their value already, (H, W) bool; None when all have.
     result
         The finished result, or None while there is none for the present parameters. While a control is dragged it
         is the newest there is; ``result.job`` tells what it was made with.
@@ -141,6 +145,7 @@ class ColumnScene:
     fraction: float = 0.0
     picture: Picture | None = None
     image: FloatImage | None = None
+    filled: NDArray[np.bool_] | None = None
     result: Result | None = None
     draft: bool = False
     frames: tuple[Frame, ...] = ()

@@ -29,11 +29,11 @@ def thinned(pixels: NDArray[Any], side: int) -> NDArray[Any]:
     return np.ascontiguousarray(pixels[::step, ::step])
 
 
-def describe_pixel(image: FloatImage, row: int, column: int) -> str:
-    """Return place and value of a pixel for the status bar."""
+def describe_value(image: FloatImage, row: int, column: int) -> str:
+    """Return the value of a pixel for the status bar."""
     values = image[row, column]
     numbers = " ".join(f"{value:.3f}" for value in values)
-    return f"{column}, {row}   {'RGB' if len(values) == 3 else 'gray'} {numbers}"
+    return f"{'RGB' if len(values) == 3 else 'gray'} {numbers}"
 
 
 Picture = NDArray[np.uint8]

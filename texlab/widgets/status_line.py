@@ -26,6 +26,7 @@ def strut(model: QWidget) -> QWidget:
     policy = model.sizePolicy()
     policy.setRetainSizeWhenHidden(True)
     model.setSizePolicy(policy)
+    model.setObjectName("strut")
     model.setFixedWidth(1)
     model.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     model.hide()

@@ -32,6 +32,7 @@ class GalleryView(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("gallery")
+        self.setAccessibleName("Gallery")
         self.search = QLineEdit()
         self.search.setObjectName("gallery-search")
         self.search.setPlaceholderText("Search textures")

@@ -28,6 +28,7 @@ class LessonBar(QWidget):
     def __init__(self, actions: Mapping[str, QAction]) -> None:
         super().__init__()
         self.setObjectName("lesson-bar")
+        self.setAccessibleName("Lesson that is given")
         self.count = Label("")
         self.count.setObjectName("lesson-count")
         self.sentence = Label("")

@@ -22,6 +22,7 @@ class MessageBar(QFrame):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("message-bar")
+        self.setAccessibleName("Message")
         self.label = Label()
         self.label.setObjectName("message")
         self.label.setWordWrap(True)

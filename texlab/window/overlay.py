@@ -34,6 +34,7 @@ class Overlay(OwnKeys, QFrame):
     def __init__(self, dock: QDockWidget, parent: QWidget, *, at_right: bool) -> None:
         super().__init__(parent)
         self.setObjectName(f"overlay-{dock.windowTitle().lower()}")
+        self.setAccessibleName(f"{dock.windowTitle()} over the pictures")
         self.setFrameShape(QFrame.Shape.StyledPanel)
         self.setAutoFillBackground(True)
         self._dock = dock

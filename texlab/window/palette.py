@@ -80,6 +80,7 @@ class CommandPalette(QDialog):
     def __init__(self, entries: Sequence[Entry], parent: QWidget | None = None) -> None:
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("command-palette")
+        self.setAccessibleName("Command palette")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._entries = entries
         self._shown: list[Entry] = []
@@ -89,6 +90,7 @@ class CommandPalette(QDialog):
         self.field.setAccessibleName("Command")
         self.list = QListWidget()
         self.list.setObjectName("palette-list")
+        self.list.setAccessibleName("What fits the words")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(6, 6, 6, 6)
         layout.addWidget(self.field)

@@ -87,6 +87,7 @@ class PopoutReview(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
+        self.setAccessibleName("Scores and pictures")
         self._record: Record | None = None
         self._pictures: Sequence[Picture] = ()
         self.table = QTableWidget(0, len(HEADS))

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from texlab.state.changes import levels_words, part_words, reduced_words
 from texlab.storage.projects import is_project
-from texlab.style.pictures import describe_pixel
+from texlab.style.pictures import describe_value
 from texlab_core.engine.late_maps import made_map
 from texlab_core.engine.registry import methods
 
@@ -136,8 +136,18 @@ class Presenter(QObject):
         if prepared is not None and row >= 0:
             pixels = prepared.source_scaled.pixels
             if row < pixels.shape[0] and column < pixels.shape[1]:
-                text = "exemplar " + describe_pixel(pixels, row, column)
+                text = self._exemplar_words(describe_value(pixels, row, column), row, column)
         self._window.pixel_label.setText(text)
+
+    def _exemplar_words(self, value: str, row: int, column: int) -> str:
+        """Count from the crop's corner, as maps, tabs and files do."""
+        sample = self._session.state.sample
+        crop = sample.crop if sample is not None else None
+        if crop is None:
+            return f"exemplar {column}, {row}   {value}"
+        x, y = column - crop.left, row - crop.top
+        inside = 0 <= x < crop.width and 0 <= y < crop.height
+        return f"{f'exemplar {x}, {y}' if inside else 'outside the crop'}   {value}   picture {column}, {row}"
 
     def say_column_pixel(self, column_id: int, row: int, column: int) -> None:
         """Say what is under the pointer in a column."""
@@ -147,13 +157,18 @@ class Presenter(QObject):
         if scene is not None and scene.image is not None and row >= 0:
             height, width = scene.image.shape[:2]
             if row < height and column < width:
-                text = describe_pixel(scene.image, row, column)
-                maps = scene.result.maps if scene.result is not None else {}
+                filled = scene.filled is None or bool(scene.filled[row, column])
+                value = describe_value(scene.image, row, column) if filled else "not filled yet"
+                text = f"{column}, {row}   {value}"
+                # A preview is not what the maps of an earlier result are about.
+                shown = scene.result if scene.result is not None and scene.result.image is scene.image else None
+                maps = shown.maps if shown is not None else {}
                 # Only what is there already: making a map takes long.
                 source, counts = made_map(maps, "source"), made_map(maps, "candidates")
                 if source is not None:
                     origin = source.plane.data[row, column]
-                    text += f"   from exemplar {origin[1]}, {origin[0]}"
+                    # What is beside a hole that was filled has no source.
+                    text += f"   from exemplar {origin[1]}, {origin[0]}" if origin[0] >= 0 else ""
                 if counts is not None:
                     text += f"   candidates {counts.plane.data[row, column]}"
         self._window.pixel_label.setText(text)

@@ -33,6 +33,7 @@ class ExemplarStrip(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("strip")
+        self.setAccessibleName("Exemplars that were opened together")
         self._sources: tuple[Source, ...] = ()
         self.heading = Label("")
         self.heading.setObjectName("strip-heading")

@@ -31,6 +31,7 @@ class CompareBar(QWidget):
     def __init__(self, window: MainWindow) -> None:
         super().__init__()
         self.setObjectName("compare-bar")
+        self.setAccessibleName("Comparison of A and B")
         self.words = Label()
         self.words.setObjectName("compare-words")
         self.gain = ShortBox()

@@ -40,6 +40,8 @@ class Step:
         on from here; call it before the computation goes on, or after it was stopped at this step.
     phase
         Filled in by ``run``.
+    filled
+        Tells which pixels of the preview have their value already, (H, W) bool; None when all have. Valid as long.
     """
 
     done: int
@@ -50,6 +52,7 @@ class Step:
     frame: str | None = None
     state: Callable[[], Mapping[str, NDArray[Any]]] | None = None
     phase: Phase = "synthesis"
+    filled: Callable[[], NDArray[np.bool_]] | None = None
 
     @property
     def fraction(self) -> float:

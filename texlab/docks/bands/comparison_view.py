@@ -17,6 +17,7 @@ from texlab.widgets.tables import make_quiet
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
     from PySide6.QtWidgets import QWidget
 
     from texlab.docks.bands.comparison import Comparison
@@ -64,15 +65,23 @@ class HistogramPlot(Plot):
         self.fit(x=span, y=(floor, top + 0.06 * max(top - floor, 1e-6)))
 
     @staticmethod
-    def describe(shown: Comparison, x: float) -> str:
-        """Return the shares of the bin at ``x`` in words."""
+    def describe(shown: Comparison, x: float, *, cumulated: bool = False) -> str:
+        """Return the shares of the bin at ``x`` in words, or those of all values below ``x``."""
         bins = shown.exemplar.size
         place = int((x - shown.edges[0]) / (shown.edges[-1] - shown.edges[0]) * bins)
         if not 0 <= place < bins:
             return ""
-        width = shown.edges[1] - shown.edges[0]
-        words = f"{number(x)}: exemplar {shown.exemplar[place] * width:.3%}"
-        return words if shown.result is None else f"{words}, result {shown.result[place] * width:.3%}"
+        widths = np.diff(shown.edges)
+
+        def share(density: NDArray[np.float64]) -> float:
+            if not cumulated:
+                return float(density[place] * widths[place])
+            # As drawn: straight between the edges.
+            below = np.concatenate([[0.0], np.cumsum(density * widths)])
+            return float(np.interp(x, shown.edges, below))
+
+        words = f"{'below ' if cumulated else ''}{number(x)}: exemplar {share(shown.exemplar):.3%}"
+        return words if shown.result is None else f"{words}, result {share(shown.result):.3%}"
 
 
 class NumbersTable(QTableWidget):

@@ -34,6 +34,7 @@ class BandDetail(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("pyramid-detail")
+        self.setAccessibleName("Large band")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._shown: BandLarge | None = None
         self.title = Label("")

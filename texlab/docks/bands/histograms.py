@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
@@ -154,7 +155,6 @@ class HistogramsDock(FramedDock):
 
     def show_answer(self, answer: tuple[Comparison, ...]) -> None:
         """Draw the distributions and fill in the numbers."""
-        self.readout.setText("")
         for plot, shown in zip(self.plots, (*answer, None, None, None), strict=False):
             plot.setVisible(shown is not None)
         self._redraw()
@@ -193,10 +193,16 @@ class HistogramsDock(FramedDock):
             plot.show_comparison(
                 shown, log=self.log.isChecked(), cumulated=self.cumulated.isChecked(), named=first
             )
+        self.tell_again()
 
     def _hover(self, x: float, y: float) -> None:
         plot = self.sender()
         if self.answer and isinstance(plot, HistogramPlot):
             place = self.plots.index(plot)
             if place < len(self.answer):
-                self.readout.setText(plot.describe(self.answer[place], x))
+                self.readout.tell(partial(self._value_words, place, x))
+
+    def _value_words(self, place: int, x: float) -> str:
+        if self.answer is None or place >= len(self.answer):
+            return ""
+        return HistogramPlot.describe(self.answer[place], x, cumulated=self.cumulated.isChecked())

@@ -276,7 +276,7 @@ class DependenceDock(FramedDock):
     def _pointed(self, row: int, column: int) -> None:
         joint = self.sender()
         view = next((each for each in self.views if each.joint is joint), None)
-        self.readout.setText("" if view is None else view.joint.describe(row, column))
+        self.readout.tell(lambda: "" if view is None else view.joint.describe(row, column))
 
     def _open(self) -> None:
         name = self.ready.currentData()

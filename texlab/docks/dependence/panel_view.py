@@ -29,6 +29,7 @@ class PanelView(QWidget):
 
     def __init__(self, name: str, label: str, link: ViewLink) -> None:
         super().__init__()
+        self.setAccessibleName(f"Dependence in the {label}")
         self.panel: Panel | None = None
         self.title = Label("")
         self.title.setObjectName(f"{name}-title")

@@ -171,6 +171,7 @@ class Pictures(QWidget):
     def __init__(self, name: str, count: int, *, columns: int = 0, linked: bool = True) -> None:
         super().__init__()
         self.setObjectName(name)
+        self.setAccessibleName("Pictures of the experiment")
         self.shown: tuple[Shown, ...] = ()
         self.panes: list[PicturePane] = []
         self.titles: list[Label] = []

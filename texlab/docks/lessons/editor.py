@@ -88,6 +88,7 @@ class LessonEditor(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("lessons-editor")
+        self.setAccessibleName("Lesson that is edited")
         self._lesson: Lesson | None = None
         self._place = 0
         self.steps = StepList()

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QScrollArea, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.slider import Slider
 
 if TYPE_CHECKING:
     from texlab_core.documents.lessons import LessonStep
@@ -30,12 +31,11 @@ class StepWords(QScrollArea):
         self.reveal.setCheckable(True)
         self.reveal.toggled.connect(self.answer.setVisible)
         set_tip(self.reveal, "The answer to the question, once everybody has had a try")
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("lessons-series")
-        self.slider.setAccessibleName("Values of the step")
-        self.slider.valueChanged.connect(self._slid)
         self.slider_label = Label("")
         self.slider_label.setObjectName("lessons-series-value")
+        self.slider = Slider("Value of the step", lambda _: self.slider_label.text())
+        self.slider.setObjectName("lessons-series")
+        self.slider.valueChanged.connect(self._slid)
         self._slider_row = QWidget()
         row = QHBoxLayout(self._slider_row)
         row.setContentsMargins(0, 0, 0, 0)
@@ -77,6 +77,7 @@ class StepWords(QScrollArea):
 
     def _tell_value(self, parameter: str, value: Any) -> None:
         self.slider_label.setText(f"{parameter.replace('_', ' ')} {value}")
+        self.slider.tell()
 
     def _slid(self, place: int) -> None:
         if self._step is not None and self._step.series is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -116,6 +117,7 @@ class CodeDock(FramedDock):
         row.addWidget(self._headed("histogram", self.bars), 5)
         area = QScrollArea()
         area.setObjectName("code-area")
+        area.setAccessibleName("Tables of the code")
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -286,10 +288,12 @@ class CodeDock(FramedDock):
         self._show_number()
 
     def _hover(self, number: Number | None) -> None:
+        self.readout.tell(partial(self._number_words, number))
+
+    def _number_words(self, number: Number | None) -> str:
         code, answer = self._code, self.answer
         if code is None or answer is None or number is None:
-            self.readout.setText("")
-            return
+            return ""
         words = [f"{title(number)}: {digits(value(code, number))} {unit(number)}".rstrip()]
         if number.group == "energy":
             levels = float(np.sqrt(code.energies[number.place]))
@@ -300,7 +304,7 @@ class CodeDock(FramedDock):
             words.append(f"exemplar {digits(value(self._measured, number))}")
         if number.group == "energy" and answer.reached is not None:
             words.append(f"result {digits(float(answer.reached[number.place]))}")
-        self.readout.setText(", ".join(words))
+        return ", ".join(words)
 
     # What the user does.
 

@@ -86,6 +86,7 @@ class AxisEditor(QWidget):
     ) -> None:
         super().__init__(parent)
         self.setObjectName(name)
+        self.setAccessibleName(f"What is varied {title.lower()}")
         self._title = title
         self._optional = optional
         self._params: type[Params] | None = None

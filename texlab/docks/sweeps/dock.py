@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QProgressBar,
     QSizePolicy,
-    QSlider,
     QVBoxLayout,
 )
 
@@ -27,6 +26,7 @@ from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, 
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.slider import Slider
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import TEXTURE
@@ -131,7 +131,7 @@ class SweepsDock(FramedDock):
         self.save_button = self.add_button(
             "save", "Save sheet ...", "Save the sheet as one PNG that carries the sweep", self.ask_save
         )
-        self.zoom = QSlider(Qt.Orientation.Horizontal)
+        self.zoom = Slider("Size of the pictures", lambda side: f"{side} px")
         self.zoom.setRange(SMALLEST, LARGEST)
         self.zoom.setSingleStep(ZOOM_STEP)
         self.zoom.setPageStep(3 * ZOOM_STEP)
@@ -139,9 +139,7 @@ class SweepsDock(FramedDock):
         grow_with_text(self.zoom, 110, self.zoom.setFixedWidth)
         self.zoom.valueChanged.connect(lambda side: self.sheet.set_side(side))
         self.zoom.actionTriggered.connect(self._zoomed)
-        self.add_control(
-            self.zoom, "zoom", "Size of the pictures", "How large the cells are shown (Ctrl+wheel, +, -)"
-        )
+        self.add_slider(self.zoom, "zoom", "How large the cells are shown (Ctrl+wheel, +, -)")
         self.sorting = self.add_choice(
             "sort", "Order", "In which order the cells stand: as varied, or the best first", (), self._sort
         )

@@ -38,6 +38,7 @@ class ContactSheetView(QScrollArea):
     def __init__(self, name: str, empty: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName(name)
+        self.setAccessibleName("Sheet of the sweep")
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.canvas = SheetCanvas(self, empty)

@@ -36,6 +36,7 @@ class TextureChoice(QWidget):
 
     def __init__(self, name: str, title: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.setAccessibleName(f"{title}: textures")
         self._opened: tuple[str, ...] = ()
         self._chosen: dict[str, tuple[str, ...]] = {FOLDER: (), FILES: ()}
         self.box = QComboBox()

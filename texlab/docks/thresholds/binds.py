@@ -39,6 +39,8 @@ class Answered:
     """The distances of the chosen cell; and which cells bind, where that was asked for and is known."""
 
     distances: Distances
+    cell: tuple[Same, int, int]
+    """Model, k and feature that the distances are about."""
     found: Binding | None = None
 
 
@@ -60,8 +62,9 @@ def answer(
     when ``should_stop`` says so.
     """
     distances = Distances.of(model, k, feature)
+    cell = Same(model), k, feature
     if sampling is None:
-        return Answered(distances)
+        return Answered(distances, cell)
 
     def look() -> None:
         if should_stop():
@@ -70,9 +73,10 @@ def answer(
             raise _Stale
 
     try:
-        return Answered(distances, _known.get(Same(sampling), lambda: finish(binding_steps(sampling), look)))
+        found = _known.get(Same(sampling), lambda: finish(binding_steps(sampling), look))
+        return Answered(distances, cell, found)
     except _Stale:
-        return Answered(distances)
+        return Answered(distances, cell)
 
 
 def of_cells(view: TableView, found: Binding, colouring: Colouring) -> NDArray[np.float64] | None:

@@ -75,6 +75,7 @@ class ThresholdsDock(FramedDock):
         self._sampling: Sampling | None = None
         self._found: Binding | None = None
         self.editor = TableEditor("thresholds-table")
+        self._measured: binds.Answered | None = None
         self.distances = DistanceView("thresholds-distances")
         self._build_controls()
         self.cell_name = Label()
@@ -228,7 +229,7 @@ class ThresholdsDock(FramedDock):
             self._known.learn(answer.column_id, answer.axes, answer.origin)
             self.ask()
             return
-        self.distances.show_distances(answer.distances)
+        self._measured = answer
         # While a newer result is looked into, that of the last one stays.
         if answer.found is not None or self.colouring.currentData() == "values":
             self._found = answer.found
@@ -260,6 +261,11 @@ class ThresholdsDock(FramedDock):
         if view is None:
             return
         row, column = self.editor.current
+        k, name = self.editor.selected_cells()[-1]
+        cell = Same(view.axes.model), k, [each.name for each in view.axes.features].index(name)
+        # No curve stands under the name of another cell.
+        known = self._measured is not None and self._measured.cell == cell
+        self.distances.show_distances(self._measured.distances if known and self._measured is not None else None)
         self.cell_name.setText(f"{view.heads[column].title}, k {row + 1}")
         set_tip(self.cell_name, view.describe(row, column))
         value = float(view.values[row, column])

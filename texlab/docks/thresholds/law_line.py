@@ -29,6 +29,7 @@ class LawLine(QWidget):
     def __init__(self, name: str) -> None:
         super().__init__()
         self.setObjectName(name)
+        self.setAccessibleName("Law of the thresholds")
         self.knobs: dict[str, NumberKnob] = {}
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

@@ -105,13 +105,16 @@ class Growth:
     def step(self) -> Step:
         """Return where things stand."""
         done = self._filled()
-        return Step(done, self.total, "growing", preview=self.picture, state=self.state)
+        return Step(done, self.total, "growing", preview=self.picture, filled=self.known, state=self.state)
 
     def picture(self) -> FloatImage:
         """Return the image so far, (H, W, C) float32 in [0, 1]; unknown pixels are mid-gray."""
-        known = self.canvas.status == 1
-        values = np.where(known, self.canvas.values, np.uint8(128))
+        values = np.where(self.known(), self.canvas.values, np.uint8(128))
         return np.ascontiguousarray(np.moveaxis(values, 0, 2)).astype(np.float32) / np.float32(255.0)
+
+    def known(self) -> NDArray[np.bool_]:
+        """Return which pixels have their value, (H, W) bool."""
+        return np.equal(self.canvas.status, 1)
 
     def state(self) -> Mapping[str, NDArray[Any]]:
         """Return copies of all that is needed to go on bit for bit, as the arrays of an ``ArraysInput``."""

@@ -1,0 +1,44 @@
+"""A slider that tells screen readers what it sets, not where its handle stands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QSlider
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from PySide6.QtWidgets import QAbstractSlider, QWidget
+
+
+class Slider(QSlider):
+    """A horizontal slider whose accessible name ends with its value: "iterations: 5".
+
+    Parameters
+    ----------
+    title
+        What it sets.
+    says
+        Returns the value at a position, as people say it, with its unit.
+    parent
+        The parent widget.
+    """
+
+    def __init__(self, title: str, says: Callable[[int], str], parent: QWidget | None = None) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.title = title
+        self._says = says
+        self.tell()
+
+    def sliderChange(self, change: QAbstractSlider.SliderChange) -> None:
+        """Tell the value whenever position or range change, also while signals are blocked."""
+        super().sliderChange(change)
+        self.tell()
+
+    def tell(self) -> None:
+        """Put the value into the accessible name; for values that change while the position stays."""
+        said = f"{self.title}: {self._says(self.value())}"
+        if said != self.accessibleName():
+            self.setAccessibleName(said)
