@@ -24,6 +24,7 @@ from PySide6.QtWidgets import QApplication
 
 from tests.soak import census
 from tests.soak.hands import Hands
+from texlab.app.memory import give_back
 from texlab.app.start import application, await_threads, build, complete
 from texlab.storage.settings import Settings
 from texlab.style.theme import ThemeSource
@@ -127,7 +128,8 @@ class Soak:
         driver.start()
         loop.exec()
         self._rest(explorer)
-        if self.done % self.options.every == 0 or self.done >= self.options.events:
+        counted = self.done % self.options.every == 0 or self.done >= self.options.events
+        if counted:
             self._count(explorer)
         window.close()
         window.deleteLater()
@@ -139,6 +141,8 @@ class Soak:
         gc.collect()
         if gone() is not None:
             self.problems.append(f"The window that was closed after {self.done} events is still in memory.")
+        if counted:
+            self._count(None)
 
     def _rest(self, explorer: Explorer) -> None:
         """Close what is open over the window, and wait until it has come to rest."""
@@ -158,9 +162,14 @@ class Soak:
             QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
             time.sleep(0.005)
 
-    def _count(self, explorer: Explorer) -> None:
+    def _count(self, explorer: Explorer | None) -> None:
+        """Count with a window at rest, and without any: what windows show differs, what is left must not."""
+        # At rest the program does this by itself.
+        give_back()
         found = census.take(self.done, explorer)
         print(found.line(), flush=True)
+        if explorer is not None:
+            return
         if self.counts and self.options.objects:
             for name, count in (found.types - self.counts[-1].types).most_common(25):
                 print(f"        {count:>+8} {name}")
@@ -175,7 +184,7 @@ class Soak:
         if len(self.counts) > 1:
             first, last = self.counts[0], self.counts[-1]
             growth = last.resident / first.resident - 1
-            print(f"memory after {first.events} events and after {last.events}: {100 * growth:+.1f} %")
+            print(f"memory after {first.events} and {last.events} events, windows closed: {100 * growth:+.1f} %")
             if growth > self.options.growth:
                 self.problems.append(f"The memory grew by {100 * growth:.1f} %.")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QTimer
 
 from texlab.app.crash import CrashHandler
-from texlab.app.memory import memory_text
+from texlab.app.memory import Thrift, memory_text
 from texlab.columns.apart import places_from_json, places_to_json
 from texlab.columns.overlays import Overlays
 from texlab.columns.workspace import Workspace
@@ -133,7 +133,8 @@ class Explorer(QObject):
         self._closed = False
         self._memory = QTimer(self)
         self._memory.setInterval(MEMORY_MS)
-        self._memory.timeout.connect(lambda: window.memory_label.setText(memory_text()))
+        self._memory.timeout.connect(self._look_at_memory)
+        self._thrift = Thrift(self)
         window.set_workspace(self.workspace)
         self.stage = StageSettings(window, self.workspace, settings)
         window.add_docks(self.docks)
@@ -212,6 +213,7 @@ class Explorer(QObject):
         # What is being typed is taken while it can still be written.
         settle_all(self.window)
         self._memory.stop()
+        self._thrift.leave()
         self.handlers.close()
         self.teach_mode.close()
         self.window.remember_geometry()
@@ -231,9 +233,14 @@ class Explorer(QObject):
         self.overlays.close()
         self.teacher.close()
         self.controller.close()
+        self._thrift.close()
         self.crash.remove()
         self.desk.close()
         self.tabs.close()
+
+    def _look_at_memory(self) -> None:
+        self.window.memory_label.setText(memory_text())
+        self._thrift.look(idle=self.idle)
 
     @property
     def idle(self) -> bool:

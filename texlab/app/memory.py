@@ -1,9 +1,21 @@
-"""How much memory the program uses, where the system says so without further libraries."""
+"""How much memory the program uses, and giving back what it no longer needs, where the system knows how."""
 
 from __future__ import annotations
 
+import ctypes
 import os
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from texlab.runs.late_worker import LateWorker
+from texlab.runs.worker import Worker
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QObject
+
+# Less than this is not worth the milliseconds in which nobody else gets memory.
+STEP_BYTES = 24 * 2**20
 
 
 def memory_bytes() -> int | None:
@@ -19,3 +31,37 @@ def memory_text() -> str:
     """Return the resident size for the status bar."""
     size = memory_bytes()
     return "" if size is None else f"{size / 2**20:.0f} MB"
+
+
+def give_back() -> None:
+    """Give the system what was freed, which glibc keeps in pieces between what is in use; elsewhere do nothing."""
+    if sys.platform == "linux":
+        try:
+            ctypes.CDLL(None).malloc_trim(0)
+        except (AttributeError, OSError):
+            return
+
+
+class Thrift(LateWorker):
+    """Gives memory back, in its own thread, once the program has rested for a while with more than before."""
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._rested = False
+        self._least = 0
+
+    def look(self, *, idle: bool) -> None:
+        """See what is used now; the program was at rest when that was said twice."""
+        rested, self._rested = self._rested and idle, idle
+        used = memory_bytes()
+        if used is None or not rested or used < self._least + STEP_BYTES:
+            return
+        if self._worker is None:
+            self._worker = Worker("memory", parent=self)
+            self._worker.finished.connect(lambda _: self._gave())
+        if not self._worker.busy:
+            self._worker.submit(lambda task: give_back())
+
+    def _gave(self) -> None:
+        self._least = memory_bytes() or 0
+        self.changed.emit()
