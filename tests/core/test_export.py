@@ -48,13 +48,16 @@ def job(method="tiling", size=(32, 24), seed=3, pixels=None, name="wall v2.final
 
 def test_seeds_and_sizes_are_read():
     assert parse_seeds("3") == (3,)
-    assert parse_seeds(" 1..4, 9,2 ") == (1, 2, 3, 4, 9)
+    assert parse_seeds(" 1..4, 9,2 ") == parse_seeds("1-4,9") == parse_seeds("1 \u2013 4, 9") == (1, 2, 3, 4, 9)
     assert parse_sizes("64x48, 32X32,64x48") == ((48, 64), (32, 32))
     assert parse_sizes("64x48x8", 3) == ((8, 48, 64),)
-    for wrong in ("", "a", "4..1", "1..", "-1", "0..1000", "2147483648", "1,,2"):
+    # One number is a square, or a cube.
+    assert parse_sizes("64, 48 x 32") == ((64, 64), (32, 48))
+    assert parse_sizes("16", 3) == ((16, 16, 16),)
+    for wrong in ("", "a", "4..1", "4-1", "1..", "1-", "-1", "0..1000", "2147483648", "1,,2"):
         with pytest.raises(ParamError, match="seeds: must be whole numbers"):
             parse_seeds(wrong)
-    for wrong in ("", "64", "64x", "0x4", "64x48x8", ",".join(f"{side}x9" for side in range(1, 70))):
+    for wrong in ("", "-64", "64x", "0x4", "64x48x8", ",".join(f"{side}x9" for side in range(1, 70))):
         with pytest.raises(ParamError, match="sizes: must be sizes WxH"):
             parse_sizes(wrong)
 

@@ -183,10 +183,6 @@ def test_psd_gives_its_flattened_picture():
             b"\0\0\0\x18ftypheic" + bytes(40),
             "is a HEIC image, which TexLab does not read; save it as JPEG, PNG or AVIF",
         ),
-        (
-            b"\x76\x2f\x31\x01" + bytes(60),
-            "is an OpenEXR image, which TexLab does not read; save it as a float TIFF",
-        ),
         (b"\0\0\0\x18ftypisom" + bytes(40), "is not an image that TexLab reads"),
         (imagecodecs.jpeg2k_encode(np.zeros((9, 9), np.int16), reversible=True), "with sign; up to 4 of 16 bits"),
     ],

@@ -171,7 +171,7 @@ def check_result_format(path: str | os.PathLike[str], bits: Bits | None = None, 
     """
     if dimensions == 3:
         return check_volume_format(path, bits)
-    return check_format(path, 8 if bits is None else bits)
+    return check_format(path, bits)
 
 
 def carried_alpha(result: Result) -> FloatImage | None:

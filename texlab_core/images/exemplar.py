@@ -46,8 +46,8 @@ def as_exemplar(
     ----------
     source
         An array (H, W) or (H, W, 1 | 3 | 4), of any real type; an image input; the path or the bytes of a PNG,
-        JPEG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, Radiance HDR, PBM, PGM or PPM file; or
-        "gallery:NAME".
+        JPEG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, OpenEXR, Radiance HDR, PBM, PGM or PPM
+        file; or "gallery:NAME".
     name
         For people and recipes; by default the file's name.
     crop

@@ -134,7 +134,7 @@ def _missing(one: Named, other: Named) -> str:
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
-    """Return the seeds of ``3``, ``1..4`` or ``1..4,9``, in their order and each once.
+    """Return the seeds of ``3``, ``1..4`` (or ``1-4``) or ``1..4,9``, in their order and each once.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     allowed = f"whole numbers from 0 to {MAX_SEED} as in 1..4,9, at most {MOST_FILES} of them"
     found: dict[int, None] = {}
     for part in text.split(","):
-        match = re.fullmatch(r"\s*([0-9]{1,10})\s*(?:\.\.\s*([0-9]{1,10})\s*)?", part)
+        match = re.fullmatch(r"\s*([0-9]{1,10})\s*(?:(?:\.\.|[-\u2013])\s*([0-9]{1,10})\s*)?", part)
         if match is None:
             raise ParamError("seeds", allowed, text)
         first = int(match[1])
@@ -158,7 +158,9 @@ def parse_seeds(text: str) -> tuple[int, ...]:
 
 
 def parse_sizes(text: str, dimensions: int = 2) -> tuple[tuple[int, ...], ...]:
-    """Return the sizes of ``256x192,512x512``, each as height and width, or depth, height and width.
+    """Return the sizes of ``256x192,512``, each as height and width, or depth, height and width.
+
+    One number stands for all sides.
 
     Raises
     ------
@@ -166,10 +168,11 @@ def parse_sizes(text: str, dimensions: int = 2) -> tuple[tuple[int, ...], ...]:
         When a part is no size of so many sides. Whether a method can make it is asked by the job.
     """
     form = "WxH" if dimensions == 2 else "WxHxD"
-    allowed = f"sizes {form} separated by commas, at most {_MOST_SIZES}"
+    allowed = f"sizes {form}, or one number for all sides, separated by commas, at most {_MOST_SIZES}"
     found: dict[tuple[int, ...], None] = {}
     for part in text.split(","):
-        sides = re.split("[xX×]", part.strip())
+        sides = re.split(r"\s*[xX×]\s*", part.strip())
+        sides = sides * dimensions if len(sides) == 1 else sides
         if len(sides) != dimensions or not all(re.fullmatch(r"[1-9][0-9]{0,8}", side) for side in sides):
             raise ParamError("sizes", allowed, text)
         found[tuple(int(side) for side in reversed(sides))] = None

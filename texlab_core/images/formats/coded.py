@@ -137,13 +137,6 @@ def refuse_heic(file: BinaryIO, gate: Gate) -> Decoded:
     raise ImageError(f"{gate.name}: is a HEIC image, which TexLab does not read; save it as JPEG, PNG or AVIF.")
 
 
-def refuse_exr(file: BinaryIO, gate: Gate) -> Decoded:
-    """Say that OpenEXR files are not read."""
-    raise ImageError(
-        f"{gate.name}: is an OpenEXR image, which TexLab does not read; save it as a float TIFF or Radiance HDR."
-    )
-
-
 def _frames(count: int) -> list[str]:
     return [f"The file has {count} frames; the first one was used."] if count > 1 else []
 

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     Reader = Callable[[BinaryIO, Gate], Decoded]
 
 READABLE = (
-    "PNG, JPEG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, Radiance HDR, PBM, PGM or PPM"
+    "PNG, JPEG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, GIF, BMP, TGA, PSD, QOI, OpenEXR, Radiance HDR, PBM, PGM "
+    "or PPM"
 )
 READABLE_SUFFIXES = (
     *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".avif", ".jxl", ".jp2", ".j2k", ".gif", ".bmp"),
-    *(".tga", ".psd", ".qoi", ".hdr", ".pgm", ".ppm", ".pbm", ".pnm"),
+    *(".tga", ".psd", ".qoi", ".exr", ".hdr", ".pgm", ".ppm", ".pbm", ".pnm"),
 )
 _HEAD = 64
 _TAIL = 18
@@ -92,7 +93,11 @@ def _coded(head: bytes) -> Reader | None:
         return coded.read_jpeg2000
     if head.startswith(b"qoif"):
         return coded.read_qoi
-    return coded.refuse_exr if head.startswith(b"\x76\x2f\x31\x01") else None
+    if head.startswith(b"\x76\x2f\x31\x01"):
+        from texlab_core.images.formats.exr import read_exr
+
+        return read_exr
+    return None
 
 
 def _older(head: bytes, tail: bytes) -> Reader | None:

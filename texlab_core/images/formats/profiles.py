@@ -162,6 +162,13 @@ def encode_srgb(light: NDArray[Any]) -> NDArray[Any]:
     return encoded
 
 
+def decode_srgb(values: NDArray[Any]) -> NDArray[Any]:
+    """Return the linear light of sRGB values in [0, 1]; the inverse of :func:`encode_srgb`."""
+    high = ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4
+    light: NDArray[Any] = np.where(values <= _ENCODED_SRGB, values / 12.92, high)
+    return light
+
+
 def from_light(light: NDArray[Any], notes: list[str]) -> NDArray[np.float32]:
     """Return sRGB values in [0, 1] of light, whose white is 1 if next to nothing is brighter.
 

@@ -1,4 +1,4 @@
-"""Write images: PNG, TIFF, WebP, JPEG, AVIF and JPEG XL, as deep as each of them goes; whole or not at all."""
+"""Write images: PNG, TIFF, WebP, JPEG, AVIF, JPEG XL and OpenEXR, as deep as each goes; whole or not at all."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Bits = Literal[8, 16, "float"]
-WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg", ".avif", ".jxl")
+WRITABLE_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg", ".avif", ".jxl", ".exr")
 LOSSY_SUFFIXES = (".webp", ".jpg", ".jpeg", ".avif", ".jxl")
 TEXT_SUFFIXES = (".png", ".tif", ".tiff", ".webp", ".jpg", ".jpeg")
 _BITS: dict[str, tuple[Bits, ...]] = {
@@ -33,6 +33,7 @@ _BITS: dict[str, tuple[Bits, ...]] = {
     ".jpeg": (8,),
     ".avif": (8,),
     ".jxl": (8, 16, "float"),
+    ".exr": ("float",),
 }
 _ROWS = 256
 _JPEG_QUALITY = 95
@@ -76,17 +77,17 @@ def encode_image(
     Parameters
     ----------
     path
-        Ends in .png, .tif, .tiff, .webp, .jpg, .jpeg, .avif or .jxl, which chooses the format.
+        Ends in .png, .tif, .tiff, .webp, .jpg, .jpeg, .avif, .jxl or .exr, which chooses the format.
     pixels
         (H, W) or (H, W, 1 | 3) floats in [0, 1]; integers of a file are rounded to the nearest, and values outside
-        are clipped. Floats are written as float32, as they are.
+        are clipped. Floats are written as float32, as they are; OpenEXR holds light, without the curve of sRGB.
     bits
         8, 16 or "float" for each sample.
     text
         Texts by key, for PNG, JPEG and WebP; a TIFF takes one ASCII text, its description, after the word TexLab:
         what starts with a brace and has a "shape" is taken by other programs for a description of theirs.
     alpha
-        (H, W) or (H, W, 1) floats in [0, 1], for all formats but JPEG; colours are not multiplied by it.
+        (H, W) or (H, W, 1) floats in [0, 1], for all formats but JPEG; OpenEXR holds colours multiplied by it.
     quality
         1 to 100, for the formats that can lose something: JPEG (95 when None), WebP, AVIF and JPEG XL, which lose
         nothing when None.
@@ -121,6 +122,8 @@ def encode_image(
         return _encode_tiff(values, text)
     if suffix == ".webp":
         return _encode_webp(values, text, name, quality)
+    if suffix == ".exr":
+        return _encode_exr(values, text)
     if suffix in (".avif", ".jxl"):
         from texlab_core.images.formats.modern import encode_avif, encode_jxl
 
@@ -176,8 +179,8 @@ def named_with_suffix(path: str | os.PathLike[str], suffix: str) -> Path:
     return given if given.suffix.lower() in _BITS else given.with_name(given.name + suffix)
 
 
-def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
-    """Return the suffix in lower case.
+def check_format(path: str | os.PathLike[str], bits: Bits | None = None) -> str:
+    """Return the suffix in lower case; ``bits`` None asks for the format alone.
 
     Raises
     ------
@@ -188,15 +191,11 @@ def check_format(path: str | os.PathLike[str], bits: Bits = 8) -> str:
     if not os.fspath(path):
         raise ImageError("The name of the file to write is empty.")
     if suffix not in _BITS:
-        if suffix == ".exr":
-            raise ImageError(
-                f"{os.fspath(path)}: nothing that is installed writes EXR; a .tif of floats holds the same values."
-            )
         raise ImageError(
             f"{os.fspath(path)}: images are written as {', '.join(WRITABLE_SUFFIXES)}, got {suffix!r}."
         )
     check_codec(suffix, os.fspath(path))
-    if bits not in _BITS[suffix]:
+    if bits is not None and bits not in _BITS[suffix]:
         allowed = " or ".join(str(each) for each in _BITS[suffix])
         raise ImageError(f"{os.fspath(path)}: the bits of a {suffix} file must be {allowed}, got {bits!r}.")
     return suffix
@@ -273,6 +272,20 @@ def _encode_webp(values: NDArray[Any], text: Mapping[str, str] | None, name: str
     for key, each in (text or {}).items():
         webp = webp_text.with_text(webp, key, each)
     return webp
+
+
+def _encode_exr(values: NDArray[Any], text: Mapping[str, str] | None) -> bytes:
+    from texlab_core.images.formats.exr import encode_exr
+    from texlab_core.images.formats.profiles import decode_srgb
+
+    if text:
+        raise ValueError("A .exr file takes no text.")
+    planes = values.reshape(*values.shape[:2], -1)
+    colours = planes.shape[2] - (planes.shape[2] in (2, 4))
+    light, alpha = decode_srgb(planes[..., :colours]), planes[..., colours:]
+    if alpha.shape[2]:
+        light = np.concatenate([light * alpha, alpha], axis=2)
+    return encode_exr(light.astype(np.float32))
 
 
 def _encode_jpeg(values: NDArray[Any], text: Mapping[str, str] | None, quality: int) -> bytes:
