@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench soak bar tuned report kill calibrate wheel sdist docs lock bits icons program screenshot clean distclean
+.PHONY: run test lint fmt bench soak bar tuned report kill calibrate wheel sdist docs lock bits icons program screenshot screens clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -84,6 +84,10 @@ program: .venv/.ready-run
 # The picture in the README.
 screenshot: .venv/.ready-run
 	@$(BIN)/texlab screenshot --out resources/help/window.png --gallery structured-pebbles
+
+# Every layout in both themes at the sizes of usual screens, to be looked at: build/screens.
+screens: .venv/.ready-run
+	@$(PY) .ci/screens.py
 
 .venv/.ready-%: pyproject.toml .ci/setup_env.py
 	@$(PYTHON) .ci/setup_env.py $*

@@ -84,7 +84,7 @@ def test_the_other_choices_are_taken_from_the_exemplars_menu(
     Image.fromarray(pixels, "RGBA").save(path)
     explorer = open_window(str(path), [("tiling", hb_params("tiling"))])
     exemplar = explorer.workspace.exemplar
-    assert exemplar.choices.text() == "50 %"
+    assert exemplar.scale_box.text() == "50 %"
     assert exemplar.choices.accessibleName() == "shown at 50 % so that it fits 256 px; change"
     assert "shown at 50 % so that it fits 256 px" in exemplar.line.toolTip().replace("\n", " ")
 

@@ -36,6 +36,7 @@ def press(qtbot: Any, dialog: ExportDialog) -> None:
 def test_the_chosen_column_is_written_with_seeds_and_sizes(
     explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path
 ) -> None:
+    opened.out.clear()
     assert opened.names.text() == "Say where to write to."
     assert not opened.run_button.isEnabled()
     opened.out.setText(str(tmp_path / "made"))
@@ -112,7 +113,7 @@ def test_it_can_be_stopped(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_
         ({"columns": ()}, "at least one column"),
         ({"out": ""}, "Say where"),
         ({"seeds": "4..1"}, "seeds"),
-        ({"sizes": "9"}, "sizes"),
+        ({"sizes": "9x"}, "sizes"),
         ({"pattern": "{x}"}, "name"),
         ({"pattern": "a", "seeds": "1,2"}, "add {seed}"),
         ({"bits": "float"}, "8 or 16"),

@@ -11,7 +11,7 @@ from PySide6.QtCore import QLocale, Qt
 from PySide6.QtTest import QTest
 
 from texlab.style.numbers import parse_list, parse_number
-from texlab.widgets.number_box import NumberBox, WholeBox
+from texlab.widgets.number_box import NumberBox, ShareBox, WholeBox
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -128,6 +128,33 @@ def test_a_whole_number_is_no_fraction(qtbot: Any, locale: str) -> None:
     assert box.text() == "12345"
 
 
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [
+        ("50", 0.5),
+        ("50 %", 0.5),
+        ("0.5", 0.5),
+        ("0,5", 0.5),
+        ("×0.5", 0.5),
+        ("x1", 1.0),
+        ("12,5%", 0.125),
+        ("1", 0.01),
+    ],
+)
+def test_a_share_is_typed_in_percent_or_as_a_factor(qtbot: Any, locale: str, typed: str, value: float) -> None:
+    box = ShareBox()
+    qtbot.addWidget(box)
+    box.setRange(0.01, 1.0)
+    box.setValue(0.25)
+    box.show()
+    type_into(box, typed)
+    assert box.value() == value
+    assert box.text() == f"{100 * value:g} %"
+    for wrong in ("0.5 %", "200", "x2", "half", ""):
+        type_into(box, wrong)
+        assert box.value() == value, wrong
+
+
 def test_every_number_box_of_the_window_reads_both_signs(qtbot: Any, open_window: Any, texture: Any) -> None:
     explorer = open_window(str(texture), columns=None, wait=False)
     window = explorer.window
@@ -141,7 +168,9 @@ def test_every_number_box_of_the_window_reads_both_signs(qtbot: Any, open_window
         for box in boxes:
             box.blockSignals(True)
             middle = round((box.minimum() + min(box.maximum(), box.minimum() + 2)) / 2 + 0.01, 2)
-            for typed in (f"{middle:.2f}", f"{middle:.2f}".replace(".", ",")):
+            # A share is written in percent.
+            written = f"{100 * middle:.2f}" if isinstance(box, ShareBox) else f"{middle:.2f}"
+            for typed in (written, written.replace(".", ",")):
                 line = box.lineEdit()
                 line.setText(f"{box.prefix()}{typed}{box.suffix()}")
                 box.interpretText()

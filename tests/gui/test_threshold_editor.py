@@ -137,7 +137,13 @@ def test_alpha_and_beta_stand_above_the_table(hand: Hand, qtbot: Any) -> None:
     hand.column = dataclasses.replace(hand.column, params=hand.column.params.replace(alpha=0.3, beta=0.5))
     hand.feed()
     assert law.knobs["alpha"].box.value() == 0.3
-    assert law.words.text() == law_words(0.3, 0.5, hand.editor.view.axes.depth)
+    assert law_words(0.3, 0.5, hand.editor.view.axes.depth) in law.words.toolTip().replace("\n", " ")
+    # As much of it is written as there is room for, and nothing is cut.
+    for width in (1000, 260, 150, 20):
+        law.words.resize(width, law.words.height())
+        law._fit()
+        assert law.words.fontMetrics().horizontalAdvance(law.words.text()) <= width
+        assert law_words(0.3, 0.5, hand.editor.view.axes.depth).startswith(law.words.text())
 
 
 # What binds.

@@ -186,6 +186,7 @@ class Explorer(QObject):
         self.session.reset_history()
         ids = [column.id for column in made]
         self.workspace.apart.want(places_from_json(self.settings.values.get(APART), ids))
+        self.tuning.set_active(self.settings.text("layout") == "tune")
         if broken := " ".join(each.sentence for each in failures()):
             log.warning(broken)
             self.window.message_bar.tell(broken, "problem")

@@ -15,7 +15,7 @@ from texlab.columns.grip import Grip
 from texlab.columns.history_popup import numbers_before
 from texlab.columns.numbers_popup import NumbersPopup
 from texlab.widgets.number_box import NumberBox
-from texlab.widgets.plain import set_tip
+from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
 
 if TYPE_CHECKING:
@@ -63,6 +63,8 @@ class ColumnView(Cell):
         for name, command in COLUMN_COMMANDS.items():
             if not command.own:
                 continue
+            if command.apart:
+                self.menu.addSeparator()
             action = self.menu.addAction(command.own)
             action.setObjectName(f"column-{name}-{column_id}")
             action.setCheckable(command.checkable)
@@ -85,7 +87,12 @@ class ColumnView(Cell):
         self.progress.setAccessibleName("Progress of this column")
         self.stop_button.hide()
         self.grip = Grip(f"grip-{column_id}")
+        self.badge = Label("")
+        self.badge.setObjectName(f"badge-{column_id}")
+        self.badge.setProperty("role", "heading")
+        self.badge.hide()
         self.head.addWidget(self.grip)
+        self.head.addWidget(self.badge)
         self.head.addWidget(self.method_box, 1)
         for button in (self.run_button, self.stop_button, self.menu_button):
             self.head.addWidget(button)
@@ -125,6 +132,11 @@ class ColumnView(Cell):
         self._title = title
         self.method_box.set_label(title)
         set_tip(self.method_box, f"{title}\nClick: another method for this column" if title else "The method")
+
+    def set_badge(self, letter: str) -> None:
+        """Say which of two compared columns it is; "" for none of them."""
+        self.badge.setText(letter)
+        self.badge.setVisible(bool(letter))
 
     def show_numbers(self) -> None:
         """Show every number about the picture."""

@@ -19,6 +19,8 @@ class Command:
         A line goes before it in the menu.
     own
         Its text in the column's own menu; "" keeps it out of there.
+    apart
+        A line goes before it in the column's own menu.
     """
 
     menu: str
@@ -29,6 +31,7 @@ class Command:
     checkable: bool = False
     separator: bool = False
     own: str = ""
+    apart: bool = False
 
 
 COLUMN_COMMANDS = {
@@ -52,7 +55,7 @@ COLUMN_COMMANDS = {
         ),
         Command(
             "&File", "export", "&Save result ...", "Ctrl+S", "Save the chosen column's result with its recipe",
-            own="Save result as PNG ...",
+            own="Save result ...", apart=True,
         ),
         Command(
             "&Edit", "copy", "&Copy picture", "Ctrl+C", "Copy the chosen column's picture", separator=True,
@@ -64,7 +67,7 @@ COLUMN_COMMANDS = {
         ),
         Command(
             "&Column", "enlarge", "Enlarge column", "M", "Show the chosen column alone, or all of them again",
-            own="Enlarge, or put back",
+            own="Enlarge, or put back", apart=True,
         ),
         Command(
             "&Column", "apart", "Column in its o&wn window", "Shift+M",
@@ -85,7 +88,7 @@ COLUMN_COMMANDS = {
         ),
         Command(
             "&Column", "own-seed", "Seed of its own", "", "The dice for all columns leaves this column's seed",
-            own="Lock the seed", checkable=True,
+            own="Lock the seed", checkable=True, apart=True,
         ),
         Command(
             "&Column", "new-seed", "New seed for this column", "Shift+D", "Another seed for this column alone",
@@ -93,7 +96,7 @@ COLUMN_COMMANDS = {
         ),
         Command(
             "&Column", "remove", "&Remove column", "Ctrl+W", "Remove the chosen column",
-            own="Remove column",
+            own="Remove column", apart=True,
         ),
         Command("&Column", "run", "R&un column", "F5", "Run the chosen column again", separator=True),
         Command("&Column", "stop", "&Stop column", "Esc", "Stop the chosen column"),

@@ -14,7 +14,7 @@ from texlab.columns.cell import Cell
 from texlab.columns.exemplar_panel import ExemplarPanel
 from texlab.columns.foot import Foot
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
-from texlab.widgets.number_box import NumberBox
+from texlab.widgets.number_box import ShareBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.settling import Settling
 from texlab.widgets.short_box import ShortBox
@@ -57,6 +57,7 @@ class ExemplarView(Cell):
     """Shows the scaled source; the crop box recomputes everything while it is dragged.
 
     ``crop_changed(crop or None, final)``, ``scale_changed(scale)``, ``hovered(row, column)`` in the scaled source;
+    ``part_shown()`` when another part is framed, after a drag at its end;
     ``whole_wanted(whole)`` for all of a large picture reduced, or its middle at full size;
     ``transparency_wanted(use)`` a key of ``TRANSPARENCY``; ``levels_changed(levels or None, look_only)``.
     """
@@ -69,6 +70,7 @@ class ExemplarView(Cell):
     hovered = Signal(int, int)
     clicked = Signal(int, int)
     enlarged = Signal()
+    part_shown = Signal()
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(Foot("exemplar-line", has_figures=False), link, 2, parent)
@@ -86,7 +88,7 @@ class ExemplarView(Cell):
             "Use a part of the picture (X): drag the box or its edges. Arrow keys move it, by 8 pixels with Ctrl; "
             "with Shift they resize it.",
         )
-        self.scale_box = NumberBox()
+        self.scale_box = ShareBox()
         self.scale_box.setObjectName("scale-box")
         self.scale_box.setAccessibleName("Scale of the exemplar")
         set_tip(
@@ -95,9 +97,7 @@ class ExemplarView(Cell):
             "a texture element should be 10 to 40 pixels wide.",
         )
         self.scale_box.setRange(0.01, 1.0)
-        self.scale_box.setDecimals(3)
         self.scale_box.setSingleStep(0.05)
-        self.scale_box.setPrefix("×")
         self.more = QToolButton()
         self.more.setObjectName("exemplar-more")
         self.more.setText("⋯")
@@ -119,11 +119,12 @@ class ExemplarView(Cell):
         self.choices.setAutoRaise(True)
         self.choices.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.choices.setMenu(QMenu(self.choices))
+        self.choices.setStyleSheet("QToolButton::menu-indicator { image: none; }")
         self.choices.hide()
         self.head.addWidget(self.title, 1)
-        self.head.addWidget(self.choices)
         self.head.addWidget(self.crop_button)
         self.head.addWidget(self.scale_box)
+        self.head.addWidget(self.choices)
         self.head.addWidget(self.more)
         # The row is as high as those of the columns.
         button = QToolButton()
@@ -137,6 +138,11 @@ class ExemplarView(Cell):
         self.pane.hovered.connect(self.hovered)
         self.pane.clicked.connect(self.clicked)
         self.pane.double_clicked.connect(self.enlarged)
+
+    @property
+    def crop(self) -> Crop | None:
+        """The part that is framed."""
+        return self._crop
 
     def set_quiet(self, quiet: bool) -> None:
         """Leave the room above the picture to its name, or show what is turned there again."""
@@ -166,7 +172,7 @@ class ExemplarView(Cell):
         whole, part = as_a_whole(sample), at_full_size(sample)
         is_large, use = whole.scale < 1, use_of_alpha(sample.source.notes)
         self.choices.setVisible(is_large or use is not None)
-        self.choices.setText(f"{100 * sample.scale:.3g} %" if is_large else "α")
+        self.choices.setText("▾" if use is None else "α")
         name = f"{reduced_words(sample) or 'The part and the transparency in use'}; change"
         self.choices.setAccessibleName(name)
         set_tip(self.choices, name)
@@ -198,6 +204,8 @@ class ExemplarView(Cell):
         self.panel.move(self.mapToGlobal(self.more.geometry().bottomLeft()))
         self.panel.show()
         self.panel.boxes["x"].setFocus()
+        # What is typed first takes the place of what stands there.
+        self.panel.boxes["x"].selectAll()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         """Offer what can be done with the exemplar."""
@@ -253,12 +261,12 @@ class ExemplarView(Cell):
             return
         self._crop = crop
         self._box.setVisible(crop is not None)
-        if crop is None:
-            return
-        with QSignalBlocker(self._box):
-            self._box.setPos([crop.left, crop.top], update=False)
-            self._box.setSize([crop.width, crop.height])
-            self._box.stateChanged(finish=False)
+        if crop is not None:
+            with QSignalBlocker(self._box):
+                self._box.setPos([crop.left, crop.top], update=False)
+                self._box.setSize([crop.width, crop.height])
+                self._box.stateChanged(finish=False)
+        self.part_shown.emit()
 
     def _pen(self) -> Any:
         return pg.mkPen(QColor("#ffd54a"), width=2)

@@ -62,6 +62,7 @@ class Foot(QWidget):
         self.box.setSpacing(0)
         self.box.addLayout(self.row)
         self.box.addWidget(self.line, 1)
+        self.box.addStretch(0)
         if has_figures:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
         self._take_room()
@@ -86,6 +87,9 @@ class Foot(QWidget):
         self.row.setDirection(ways.TopToBottom if words == "beside" else ways.LeftToRight)
         self.box.setDirection(ways.LeftToRight if words == "line" else ways.TopToBottom)
         self.box.setSpacing(GAP if words == "line" else 0)
+        # Beside a high picture the line stands under the figures, and what is left is below both.
+        self.box.setStretch(2, 1 if words == "beside" else 0)
+        self.box.setStretch(1, 0 if words == "beside" else 1)
         policy = QSizePolicy.Policy
         for each in self.figures:
             # What is longer than the longest figure is broken into lines there.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint, QRect, QSize, QTimer, Signal
+from PySide6.QtCore import QPoint, QRect, QRectF, QSize, QTimer, Signal
 from PySide6.QtWidgets import QApplication, QFrame, QRubberBand, QScrollArea
 
 from texlab.columns.apart import Apart
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 # The id that stands for the exemplar where a column could stand.
 EXEMPLAR = 0
+# Around the part of the exemplar that fills its pane, as a share of its longer side.
+MARGIN = 0.02
 
 
 class Workspace(QScrollArea):
@@ -62,6 +64,7 @@ class Workspace(QScrollArea):
         self.apart.changed.connect(self._show_cells)
         self._landing = QRubberBand(QRubberBand.Shape.Rectangle, self.grid)
         self._linked = False
+        self._close = False
         self._tiled = False
         self._surround = ""
         self._look: Levels | None = None
@@ -80,6 +83,7 @@ class Workspace(QScrollArea):
         self._placing.setInterval(0)
         self._placing.timeout.connect(self.place)
         self.exemplar.enlarged.connect(lambda: self.enlarge(EXEMPLAR))
+        self.exemplar.part_shown.connect(self._aim)
         for bar in (self.horizontalScrollBar(), self.verticalScrollBar()):
             # Columns have come or gone, or the window is smaller.
             bar.rangeChanged.connect(lambda *_: self._scroll())
@@ -293,6 +297,21 @@ class Workspace(QScrollArea):
         """Show the pictures whole."""
         self.link.fit()
         self.exemplar_link.fit()
+
+    def set_close(self, close: bool) -> None:
+        """Let the part of the exemplar that is used fill its pane, or show it all."""
+        self._close = close
+        self._aim()
+
+    def _aim(self) -> None:
+        crop = self.exemplar.crop if self._close else None
+        if crop is None:
+            self.exemplar_link.set_focus(None)
+            return
+        # The frame of the part is seen, too.
+        more = MARGIN * max(crop.width, crop.height)
+        part = QRectF(crop.left, crop.top, crop.width, crop.height)
+        self.exemplar_link.set_focus(part.adjusted(-more, -more, more, more))
 
     def actual_size(self) -> None:
         """Show one image pixel per screen pixel."""

@@ -179,7 +179,7 @@ def stylesheet(theme: Theme, points: float) -> str:
     QDialog#command-palette {{ border: 1px solid {theme.accent}; background: {theme.window}; }}
     QListWidget, QTreeWidget, QScrollArea {{ border: none; }}
     QProgressBar {{ border: none; background: {theme.raised}; border-radius: 2px; }}
-    QProgressBar {{ max-height: 4px; min-height: 4px; }}
+    QProgressBar {{ max-height: 4px; min-height: 4px; color: transparent; }}
     QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
     QSplitter::handle {{ background: {theme.window}; }}
     QSplitter::handle:hover {{ background: {theme.accent}; }}

@@ -50,16 +50,41 @@ class NumberBox(QDoubleSpinBox):
 
     def validate(self, text: str, position: int) -> _Read:
         """Let anything be typed; only a number within the range is acceptable."""
-        return _judged(self, _typed(self, text), text, position)
+        return _judged(self, self._read(text), text, position)
 
     def valueFromText(self, text: str) -> float:
         """Return the number that was typed; the value of the box when it is none."""
-        value = _typed(self, text)
+        value = self._read(text)
         return self.value() if value is None else value
+
+    def _read(self, text: str) -> float | None:
+        return _typed(self, text)
 
     def fixup(self, text: str) -> str:
         """Leave what was typed: Qt would take a decimal comma out of it and make another number."""
         return text
+
+
+class ShareBox(NumberBox):
+    """A number box for a share up to 1, written in percent: ``50``, ``50 %``, ``0.5``, ``×0.5`` are a half."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        # No suffix of Qt's: that would stay behind a factor, too.
+        self.setDecimals(5)
+
+    def textFromValue(self, value: float) -> str:
+        """Return the share in percent."""
+        return f"{100 * value:.4g} %"
+
+    def _read(self, text: str) -> float | None:
+        bare = text.strip()
+        factor = bare.lstrip("×xX*")
+        value = parse_number(factor.removesuffix("%").strip())
+        if value is None:
+            return None
+        # No picture is reduced to less than one percent.
+        return value if factor != bare or (value < 1 and "%" not in factor) else value / 100
 
 
 class WholeBox(QSpinBox):

@@ -60,6 +60,7 @@ class ViewLink(Link[Linked]):
         self._thinnest = 0
         self._centre = QPointF()
         self._scale: float | None = None
+        self._focus: QRectF | None = None
         self.rescaled: Callable[[], None] = lambda: None
         """Called after the panes show another place or scale."""
 
@@ -94,6 +95,12 @@ class ViewLink(Link[Linked]):
             if self._scale is None:
                 self.fit()
 
+    def set_focus(self, rectangle: QRectF | None) -> None:
+        """Say which part, in image pixels, is shown whole; None for the largest picture."""
+        if rectangle != self._focus:
+            self._focus = rectangle
+            self.fit()
+
     def resized(self) -> None:
         """Show the same again after a pane came, changed its size or was tiled."""
         if self._scale is None:
@@ -107,10 +114,10 @@ class ViewLink(Link[Linked]):
         """Show the largest picture whole, and the others at the same scale."""
         self._scale = None
         factor = 2 if any(pane.tiled for pane in self._panes) else 1
-        rectangle = QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
+        rectangle = self._focus or QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
         for pane in self._panes:
             pane.show_rect(rectangle)
-            if pane.shown_scale * self._thinnest < min(LEAST, self._thinnest):
+            if self._focus is None and pane.shown_scale * self._thinnest < min(LEAST, self._thinnest):
                 self._show_corner(pane, rectangle, min(1.0, LEAST / self._thinnest))
         self.rescaled()
 

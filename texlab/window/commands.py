@@ -114,7 +114,7 @@ COMMANDS = (
     Command("&View", "theme-dark", "&Dark theme", "", "Dark"),
     Command("&View", "layout-explore", "Layout &Explore", "Ctrl+1", "Everything in sight", separator=True),
     Command("&View", "layout-teach", "Layout Teac&h", "Ctrl+2", "Large: the images and one dock, for a projector"),
-    Command("&View", "layout-tune", "Layout T&une", "Ctrl+3", "Wide parameters, no gallery"),
+    Command("&View", "layout-tune", "Layout T&une", "Ctrl+3", "Exemplar, A and B large, with their parameters"),
     Command("&View", "own-layouts", "O&wn layouts ...", "", "Keep how panels and tabs are, or go back to that"),
     Command("&Teach", "full-screen", "&Full screen", "F11", "The whole screen, without menus", True),
     Command("&Teach", "notes", "&Presenter's window", "F12", "Notes, next step, controls and clock", True),

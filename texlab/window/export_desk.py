@@ -6,15 +6,16 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QUrl
+from PySide6.QtCore import QStandardPaths, QUrl
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 
 from texlab.columns.status import known_numbers
+from texlab.columns.titles import titles
 from texlab.runs.column_run import job_of
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab.window.run_dialog import RunDesk
-from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
+from texlab_core.sheets.export_names import safe_part
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,30 +46,39 @@ class ExportDesk(RunDesk):
         """Show the dialog with the columns that there are now."""
         if self.dialog is None:
             self.dialog = ExportDialog(self._window)
-            self.dialog.out.setText(self._settings.text("save-folder"))
             self.dialog.asked.connect(self._run)
             self.dialog.edited.connect(self._foresee)
             self.dialog.stopped.connect(self._stop)
             self.dialog.folder_wanted.connect(self._show_folder)
             self.dialog.path_wanted.connect(self._copy_path)
-        state = self._controller.session.state
-        columns = [
-            (each.id, f"{place}. {find_method(each.method).title}") for place, each in enumerate(state.columns, 1)
-        ]
-        self.dialog.set_columns(columns, self._controller.session.selected_id)
+        session = self._controller.session
+        self.dialog.set_columns(list(column_titles(self._controller).items()), session.selected_id)
+        exemplar = self._controller.exemplar
+        if exemplar is not None:
+            self.dialog.set_targets(self._folder(), safe_part(Path(exemplar.name.removeprefix("gallery:")).stem))
+            self.dialog.set_depth(exemplar.depth)
         self._show(self.dialog)
+
+    def _folder(self) -> str:
+        """Return where results went last, else where pictures are."""
+        pictures = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.PicturesLocation)
+        return self._settings.text("save-folder") or pictures or str(Path.home())
 
     def _foresee(self, asked: ExportRequest) -> None:
         """Show the names that a request would give, or why it cannot be carried out."""
         assert self.dialog is not None
         try:
-            self.dialog.show_names(foreseen(asked, self._items(asked)))
+            names = foreseen(asked, self._items(asked))
+            if asked.kind == "animation":
+                title = column_titles(self._controller)[self._controller.session.selected_id]
+                names = [f"{name}, of {title}" for name in names]
+            self.dialog.show_names(names)
         except InputError as error:
             self.dialog.show_problem(str(error))
 
     def _items(self, asked: ExportRequest) -> list[Item]:
         wanted = (self._controller.session.selected_id,) if asked.kind == "animation" else asked.columns
-        return column_items(self._controller, wanted)
+        return column_items(self._controller, wanted, titled=asked.kind == "files")
 
     def _run(self, asked: ExportRequest) -> None:
         dialog = self.dialog
@@ -97,8 +107,17 @@ class ExportDesk(RunDesk):
         QGuiApplication.clipboard().setText("\n".join(str(path.absolute()) for path in self.written))
 
 
-def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item]:
+def column_titles(controller: Controller) -> dict[int, str]:
+    """Return what every column is called, by id."""
+    columns = controller.scene().columns
+    return dict(zip((each.id for each in columns), titles(columns), strict=True))
+
+
+def column_items(controller: Controller, column_ids: Sequence[int], *, titled: bool = True) -> list[Item]:
     """Return columns as what can be exported, with the results that they have.
+
+    ``titled`` ones are called as in the window; others by the name that they were given alone, for a figure writes
+    beside it what they differ in.
 
     Raises
     ------
@@ -114,7 +133,9 @@ def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item
     if exemplar is None:
         raise InputError("The exemplar is still being read.")
     items = []
+    shown = column_titles(controller) if titled else {}
     for column in columns:
+        title = shown.get(column.id, column.name)
         job = job_of(column, state, exemplar)
         scene = controller.column_scene(column.id)
         result = None if scene is None else scene.result
@@ -122,9 +143,9 @@ def column_items(controller: Controller, column_ids: Sequence[int]) -> list[Item
         if result is not None and result.job.key == job.key:
             # Depth and transparency are those of today's exemplar.
             known = known_numbers(scene)
-            items.append(Item(job, result=dataclasses.replace(result, job=job), measures=known))
+            items.append(Item(job, title, dataclasses.replace(result, job=job), known))
         else:
-            items.append(Item(job))
+            items.append(Item(job, title))
     return items
 
 

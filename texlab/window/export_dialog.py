@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from PySide6.QtCore import Qt, Signal
@@ -17,6 +18,8 @@ from texlab_core.sheets.export_names import FIELDS, PATTERN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from texlab_core.images.formats.writing import Bits
+
 Kind = Literal["files", "figure", "animation"]
 KINDS: tuple[tuple[Kind, str], ...] = (
     ("files", "files, one for each result"),
@@ -30,9 +33,12 @@ FORMATS = {
     "JPEG": ".jpg",
     "AVIF": ".avif",
     "JPEG XL": ".jxl",
+    "EXR": ".exr",
 }
 BITS = {"as the exemplar": "", "8 bits": "8", "16 bits": "16", "floats": "float"}
 RECIPES = {"inside, where the format holds it": "inside", "beside each file": "beside", "nowhere": "none"}
+# Where a figure and an animation go until the user says otherwise.
+_ENDINGS: dict[Kind, str] = {"figure": ".pdf", "animation": ".webp"}
 _SHOWN = 4
 
 
@@ -90,11 +96,14 @@ class ExportDialog(RunDialog):
         super().__init__("export", "Export", "Making the results ...", 460, parent)
         self._written = False
         self._sound = False
+        self._outs: dict[Kind, str] = {}
+        self._proposed: dict[Kind, str] = {}
+        self._shown_kind: Kind = "files"
         self.kind = _box([text for _, text in KINDS])
         self.columns = TickList(6)
         self.seeds, self.sizes, self.out = QLineEdit(), QLineEdit(), QLineEdit()
         self.seeds.setPlaceholderText("each column's own; or 1..4,9")
-        self.sizes.setPlaceholderText("each column's own; or 512x512,1024x1024")
+        self.sizes.setPlaceholderText("each column's own; or 512,1024x768")
         self.format, self.bits, self.recipe = _box(FORMATS), _box(BITS), _box(RECIPES)
         self.quality = _number(0, 100, 0, "without loss")
         self.pattern = QLineEdit(PATTERN)
@@ -120,7 +129,13 @@ class ExportDialog(RunDialog):
             ("What", self.kind, "kind", "What is written", every),
             ("Columns", self.columns, "columns", "Whose results are written", ("files", "figure")),
             ("Seeds", self.seeds, "seeds", "Seeds as in 1..4,9", ("files", "figure")),
-            ("Sizes", self.sizes, "sizes", "Sizes as in 512x512,1024x1024", ("files", "figure")),
+            (
+                "Sizes",
+                self.sizes,
+                "sizes",
+                "Sizes as in 512,1024x768",
+                ("files", "figure"),
+            ),
             ("Format", self.format, "format", "The format of the files", ("files",)),
             ("Depth", self.bits, "bits", "Bits for each sample", ("files",)),
             ("Quality", self.quality, "quality", "1 to 100 for smaller files that lose something", ("files",)),
@@ -175,9 +190,34 @@ class ExportDialog(RunDialog):
         kind = self._kind()
         for _, widget, _, _, kinds in self._rows():
             self.form.setRowVisible(widget, kind in kinds)
+        if kind != self._shown_kind:
+            # Every kind keeps where it was to be written.
+            self._outs[self._shown_kind] = self.out.text()
+            self._shown_kind = kind
+            self.out.setText(self._outs.get(kind, ""))
+            if not self._running:
+                self.bar.setValue(0)
+                self.show_idle("")
 
     def _kind(self) -> Kind:
         return KINDS[self.kind.currentIndex()][0]
+
+    def set_targets(self, folder: str, stem: str) -> None:
+        """Propose where to write to, for every kind that has no place yet."""
+        self._outs[self._shown_kind] = self.out.text()
+        for kind, _ in KINDS:
+            target = folder if kind == "files" else str(Path(folder) / f"{stem}{_ENDINGS[kind]}")
+            # What was typed stays.
+            if self._outs.get(kind, "") in ("", self._proposed.get(kind)):
+                self._outs[kind] = target
+            self._proposed[kind] = target
+        self.out.setText(self._outs[self._shown_kind])
+
+    def set_depth(self, depth: Bits) -> None:
+        """Say how deep the exemplar is."""
+        own = next(iter(BITS))
+        words = "floats" if depth == "float" else f"{depth} bits"
+        self.bits.setItemText(0, f"{own} ({words})")
 
     def set_columns(self, columns: Sequence[tuple[int, str]], chosen: int) -> None:
         """Offer columns by id and title; the chosen one is ticked."""
@@ -193,7 +233,7 @@ class ExportDialog(RunDialog):
             sizes=self.sizes.text().strip(),
             out=self.out.text().strip(),
             suffix=FORMATS[self.format.currentText()],
-            bits=BITS[self.bits.currentText()],
+            bits=list(BITS.values())[self.bits.currentIndex()],
             quality=self.quality.value(),
             pattern=self.pattern.text(),
             recipe=RECIPES[self.recipe.currentText()],

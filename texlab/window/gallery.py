@@ -49,6 +49,7 @@ class GalleryView(QWidget):
         self.tree.setRootIsDecorated(False)
         self.tree.setVerticalScrollMode(QTreeWidget.ScrollMode.ScrollPerPixel)
         self.tree.setUniformRowHeights(False)
+        self.tree.setWordWrap(True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
         layout.addWidget(self.search)

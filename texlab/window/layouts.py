@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # What is in front, and the share of the height and the width of the parameters in pixels.
 FRONT = {"explore": "pyramid", "teach": "pyramid"}
 HEIGHTS = {"explore": 0.33, "teach": 0.45, "tune": 0.3}
-WIDTHS = {"explore": 250, "teach": 270, "tune": 380}
+WIDTHS = {"explore": 250, "teach": 270, "tune": 320}
 SIDES = {"gallery": Qt.DockWidgetArea.LeftDockWidgetArea, "parameters": Qt.DockWidgetArea.RightDockWidgetArea}
 
 

@@ -32,7 +32,7 @@ from texlab.window.message_bar import MessageBar
 from texlab.window.panel_strip import PanelStrip
 from texlab.window.screen_fit import first_window, panel_sizes, within
 from texlab.window.stops import FocusRing, next_stop
-from texlab.window.toolbar import ToolBar
+from texlab.window.toolbar import LAYOUTS, ToolBar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -119,6 +119,7 @@ class MainWindow(QMainWindow):
         self._make_menus()
         self.toolbar = ToolBar(self.actions_by_name)
         self.addToolBar(self.toolbar)
+        self.toolbar.layout_menu.aboutToShow.connect(self._mark_layout)
         self._make_status()
         self._restore_geometry()
         self.show_theme(themes.theme)
@@ -197,8 +198,16 @@ class MainWindow(QMainWindow):
             action.setChecked(self.themes.choice == choice)
             themes.addAction(action)
             action.triggered.connect(partial(self._choose_theme, choice))
+        layouts = QActionGroup(self)
+        for name in LAYOUTS:
+            layouts.addAction(self.actions_by_name[f"layout-{name}"]).setCheckable(True)
+        # Own layouts, sessions and lessons change it too.
+        self.menus["&View"].aboutToShow.connect(self._mark_layout)
         self.docks_menu = self.menus["&View"].addMenu("&Panels")
         self.docks_menu.setToolTipsVisible(True)
+
+    def _mark_layout(self) -> None:
+        self.actions_by_name[f"layout-{self.layouts.current}"].setChecked(True)
 
     def _fill_docks_menu(self) -> None:
         self.docks_menu.clear()

@@ -187,7 +187,8 @@ class Presenter(QObject):
             part = part_words(sample, prepared.source_scaled.size)
             size = f"{width} x {height} {kind}"
             said_first = [each for each in (said, levels_words(sample)) if each]
-            parts = [*said_first, f"{size} {part}" if part else size, *sample.source.notes]
+            between = " " if part.startswith("at ") else ", "
+            parts = [*said_first, f"{size}{between}{part}" if part else size, *sample.source.notes]
         self._workspace.exemplar.show_choice(name.removeprefix("gallery:"), parts, sample.scale, sample.crop)
         self._workspace.exemplar.offer(sample)
         if prepared is not None:

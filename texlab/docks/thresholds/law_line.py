@@ -16,9 +16,12 @@ from texlab_core.methods.de_bonet.method import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import threshold_law
 
 if TYPE_CHECKING:
+    from PySide6.QtGui import QResizeEvent
+
     from texlab_core.engine.params import Params
 
 SIGNS = {"alpha": "α", "beta": "β"}
+LAW = "T = α / k^β"
 
 
 class LawLine(QWidget):
@@ -31,6 +34,7 @@ class LawLine(QWidget):
         self.setObjectName(name)
         self.setAccessibleName("Law of the thresholds")
         self.knobs: dict[str, NumberKnob] = {}
+        self._said: tuple[str, ...] = ("",)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
@@ -60,8 +64,19 @@ class LawLine(QWidget):
             if value is not None:
                 knob.set_value(value)
         said = law_words(*law_of(params), depth)
-        self.words.setText(said)
+        # From all of it to the law alone: no word is cut.
+        self._said = (said, said.partition(":")[0].removesuffix(" at every k"), LAW, "")
+        self._fit()
         set_tip(self.words, f"{said} (k = 1 is the coarsest level; De Bonet 1997, eq. 13)")
+
+    def _fit(self) -> None:
+        metrics, room = self.words.fontMetrics(), self.words.width()
+        self.words.setText(next((each for each in self._said if metrics.horizontalAdvance(each) <= room), ""))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Say as much of the law as there is room for."""
+        super().resizeEvent(event)
+        self._fit()
 
     def settle(self) -> None:
         """Emit what has not been emitted as final yet."""
@@ -71,6 +86,6 @@ class LawLine(QWidget):
 
 def law_words(alpha: float, beta: float, depth: int) -> str:
     """Return the law with its numbers: ``T = α / k^β = 0.3 / k^1: 0.3, 0.15, 0.1``."""
-    law = f"T = α / k^β = {cell_text(alpha)} / k^{cell_text(beta)}"
+    law = f"{LAW} = {cell_text(alpha)} / k^{cell_text(beta)}"
     values = [cell_text(float(each)) for each in threshold_law(alpha, beta, depth)]
     return f"{law} at every k" if len(set(values)) == 1 else f"{law}: {', '.join(values)}"

@@ -25,7 +25,7 @@ _PLAIN = 2
 _FLAGS = {0x200: "tiles", 0x800: "deep data", 0x1000: "several parts"}
 _COMPRESSIONS = ("NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K")
 _LINES = {"NONE": 1, "ZIPS": 1, "ZIP": 16}
-_KINDS = {1: np.dtype("<f2"), 2: np.dtype("<f4")}
+_KINDS: dict[int, np.dtype[Any]] = {1: np.dtype("<f2"), 2: np.dtype("<f4")}
 _LONGEST_HEADER = 2**20
 _NAMES = {1: ("Y",), 2: ("Y", "A"), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
 
@@ -160,7 +160,8 @@ def _header(head: bytes, name: str) -> _Header:
 
 
 def _channels(listed: bytes, name: str) -> list[tuple[str, np.dtype[Any]]]:
-    found, at = [], 0
+    found: list[tuple[str, np.dtype[Any]]] = []
+    at = 0
     while listed[at : at + 1] != b"\0":
         end = listed.index(b"\0", at)
         kind, _, across, down = struct.unpack_from("<iB3xii", listed, end + 1)
