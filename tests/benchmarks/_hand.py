@@ -209,7 +209,7 @@ def cell(pointer: Pointer, explorer: Any) -> None:
     explorer.window.raise_dock("thresholds")
     wait(lambda: explorer.idle)
     pause(0.5)
-    editor = next(dock for dock in explorer.docks if dock.name == "thresholds").editor
+    editor = explorer.hosts["thresholds"].dock.editor
     start = editor.cell_rect(1, 3).center().toPoint()
     steps = np.tile(np.r_[1:16, 14:-16:-1, -14:1] * 2, 4)[:EVENTS]
     places = [editor.mapToGlobal(start + QPoint(0, int(step))) for step in steps]
@@ -219,7 +219,7 @@ def cell(pointer: Pointer, explorer: Any) -> None:
 def explain(pointer: Pointer, explorer: Any) -> None:
     """Point at pixels, one after the other, and at the end of quick moves."""
     explorer.window.raise_dock("explain")
-    dock = next(dock for dock in explorer.docks if dock.name == "explain")
+    dock = explorer.hosts["explain"].dock
     pane = explorer.workspace.columns[explorer.session.state.columns[0].id].pane
     painted: list[tuple[float, tuple[int, int]]] = []
 
@@ -269,7 +269,7 @@ def turn(pointer: Pointer, explorer: Any) -> None:
     """Turn the object carved from a solid of 128 x 128 x 128 voxels, drawn at 400 x 400, in a floating tab."""
     explorer.window.raise_dock("solids")
     frame = explorer.window.docks["solids"]
-    dock = next(dock for dock in explorer.docks if dock.name == "solids")
+    dock = explorer.hosts["solids"].dock
     frame.setFloating(True)
     frame.setGeometry(20, 20, 1400, 960)
     for beside in (False, True):

@@ -15,8 +15,10 @@ from pytestqt.qtbot import QtBot
 from tests.stub_method import stub  # noqa: F401
 from texlab.app import explorer as texlab_explorer  # noqa: F401 (before any test changes what it imports)
 from texlab.app import start as texlab_app
+from texlab.docks.lab.dock import LabDock
 from texlab.storage.settings import Settings
-from texlab.style.theme import ThemeSource
+from texlab.style.text_size import set_least
+from texlab.style.theme import LIGHT, ThemeSource, set_text_size
 from texlab.window.main_window import MainWindow
 from texlab_core.engine.registry import methods
 from texlab_core.warming import warm_up
@@ -77,6 +79,7 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
     """Return a function that opens a window and waits until its columns have finished."""
     # A test may close a window and look for what stays of it.
     opened: list[weakref.ref[Explorer]] = []
+    points = qapp.font().pointSizeF()
 
     def make(
         source: str | None, columns: list[tuple[str, Any]] | None = None, *, wait: bool = True, size: int = 48
@@ -104,6 +107,10 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
             window = explorer.window
             window.close()
             window.deleteLater()
+    if qapp.font().pointSizeF() != points:
+        # A window that taught: text is the application's.
+        set_least(0.0)
+        set_text_size(qapp, points, LIGHT)
 
 
 @pytest.fixture
@@ -152,6 +159,14 @@ def wait_idle(qtbot: Any, explorer: Explorer) -> None:
         with qtbot.waitSignal(explorer.presenter.painted, timeout=PATIENCE_MS):
             explorer.controller._refresh.start()
         idle = explorer.idle
+
+
+def make_everything(explorer: Explorer) -> None:
+    """Make every tab and every experiment, as if each had been looked at: for walks through the whole window."""
+    for dock in explorer.docks:
+        if isinstance(dock, LabDock):
+            for place in (*range(dock.bar.count()), 0):
+                dock.bar.setCurrentIndex(place)
 
 
 def ids(explorer: Explorer) -> list[int]:

@@ -337,7 +337,7 @@ def test_the_window_opens_the_tab_as_it_is_wanted(explorer: Any, qtbot: Any) -> 
     told: list[str] = []
     explorer.controller.problem.connect(told.append)
     explorer.carrier.carry_out(OpenTab("dependence", (("level", 1), ("orientation", 3), ("turns", 1))))
-    dock = next(each for each in explorer.docks if each.name == "dependence")
+    dock = explorer.hosts["dependence"].dock
     assert dock.pair == Pair(level=1, orientation=3)
     assert explorer.window.front_dock() == "dependence"
     assert told == ["Tab Dependence: turns cannot be set to 1."]

@@ -13,7 +13,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QMenu
 
 from tests.gui.conftest import drag, ids, result_image, wait_idle
-from texlab.docks.fill.dock import FillDock
 from texlab.docks.fill.masks import mask_input, read_mask
 from texlab.docks.fill.strokes import marked_box, stroke_box, stroke_lasso, stroke_line
 from texlab.storage import kept_inputs
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.app.explorer import Explorer
+    from texlab.docks.fill.dock import FillDock
 
 places = st.tuples(st.floats(-5, 35), st.floats(-5, 25))
 
@@ -93,7 +93,7 @@ def test_a_lasso_marks_the_pixels_whose_centres_lie_inside() -> None:
 def filling(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -> tuple[Explorer, FillDock]:
     params = methods()["efros-leung"].params.from_json({"window": 7})
     explorer = open_window(str(texture), [("efros-leung", params)])
-    dock = next(dock for dock in explorer.docks if isinstance(dock, FillDock))
+    dock = explorer.hosts["fill"].dock
     assert dock.take_settings({"where": "exemplar"}) == ()
     explorer.window.docks["fill"].raise_()
     qtbot.waitUntil(lambda: dock.canvas.picture is not None, timeout=20_000)
@@ -270,7 +270,7 @@ def retouching(
     explorer = open_window(
         str(tmp_path / "deep.png"), [("efros-leung", methods()["efros-leung"].params(window=5))]
     )
-    dock = next(dock for dock in explorer.docks if isinstance(dock, FillDock))
+    dock = explorer.hosts["fill"].dock
     dock.reach.setValue(16)
     explorer.window.docks["fill"].raise_()
     qtbot.waitUntil(lambda: dock.canvas.picture is not None, timeout=20_000)

@@ -104,7 +104,7 @@ def test_in_the_window_a_removed_column_comes_back(explorer: Explorer, qtbot: An
     explorer.window.actions_by_name["remove"].trigger()
     session.set_params(ids(explorer)[0], hb(iterations=3)[1], "iterations")
     wait_idle(qtbot, explorer)
-    dock: Any = next(each for each in explorer.docks if each.name == "history")
+    dock: Any = explorer.hosts["history"].dock
     explorer.window.docks["history"].show()
     explorer.window.docks["history"].raise_()
     qtbot.waitUntil(lambda: dock.list.count() == 4)

@@ -202,7 +202,7 @@ def test_a_mixture_in_the_window(qtbot: Any, open_window: Callable[..., Explorer
     assert failed is not None
     assert failed.message == "Mixture needs the input second, and none was given."
     explorer.window.docks["inputs"].raise_()
-    dock = next(each for each in explorer.docks if each.name == "inputs")
+    dock = explorer.hosts["inputs"].dock
     assert isinstance(dock, InputsDock)
     qtbot.waitUntil(lambda: dock.which.count() == 3)
     dock.take("gallery:stochastic-rock")

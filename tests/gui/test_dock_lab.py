@@ -359,7 +359,7 @@ def test_in_the_window_it_asks_in_its_thread_and_follows_a_drag(
     explorer = open_window(str(texture))
     window = explorer.window
     window.docks["lab"].raise_()
-    dock = window.findChild(LabDock)
+    dock = explorer.hosts["lab"].dock
     for name in ("lab-filters", "lab-plane"):
         dock.choose(name)
         qtbot.waitUntil(lambda: dock.page.answer is not None)

@@ -274,7 +274,7 @@ def test_a_solid_in_the_window(
     assert scene.result is not None
     assert scene.size == scene.result.job.size == (48, 48, 48)
     explorer.window.docks["solids"].raise_()
-    dock = next(each for each in explorer.docks if each.name == "solids")
+    dock = explorer.hosts["solids"].dock
     qtbot.waitUntil(lambda: dock.answer is not None)
     # The same bits as from Python.
     alone = run(scene.result.job)

@@ -7,12 +7,16 @@ from typing import Any, ClassVar
 
 import pytest
 from dock_scenes import column_of, noise, scene_of
+from PySide6.QtCore import Qt
 
+from tests.gui.conftest import wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.base import Dock, Question
 from texlab.docks.frame import WORKING
 from texlab.docks.host import DockHost
 from texlab.runs.slots import Slots
+from texlab.state.intentions import Tell
+from texlab.window.palette import CommandPalette
 from texlab_core.engine.registry import methods
 from texlab_core.engine.steps import Curve, Map
 
@@ -117,3 +121,67 @@ def test_every_dock_says_what_it_is(kind: Any) -> None:
     assert kind.name.isidentifier()
     assert kind.title
     assert kind.help.endswith(".")
+
+
+def test_a_dock_is_made_when_it_is_first_seen(qtbot: Any, explorer: Any) -> None:
+    window = explorer.window
+    front = window.front_dock()
+    made = [name for name, host in explorer.hosts.items() if host.is_made]
+    assert made == [front]
+    assert set(window.unmade) == {*explorer.hosts} - {front}
+    window.themes.choose("dark")
+    # By its name in the strip, by a command, by asking.
+    name = "spectrum"
+    host = explorer.hosts[name]
+    told: list[Any] = []
+    host.made.connect(told.append)
+    window.docks[name].raise_()
+    qtbot.waitUntil(lambda: host.is_made and host.seen)
+    dock = host.dock
+    assert told == [dock]
+    assert dock.theme.name == "dark"
+    wait_idle(qtbot, explorer)
+    assert dock.message is None
+    window.raise_dock("histograms")
+    assert explorer.hosts["histograms"].is_made
+    assert window.docks["histograms"].isAncestorOf(window.focusWidget())
+    window.themes.choose("light")
+    assert {each.theme.name for each in (dock, explorer.hosts["histograms"].dock)} == {"light"}
+    # What a tab that nobody has seen intends is carried out as well.
+    explorer.hosts["steps"].dock.intention.emit(Tell("said", False))
+    assert window.message_bar.label.text() == "said"
+
+
+def test_settings_of_a_tab_that_was_never_seen_are_kept(qtbot: Any, explorer: Any) -> None:
+    host, layouts = explorer.hosts["histograms"], explorer.own_layouts
+    layouts.keep("unseen")
+    assert layouts.layouts["unseen"].controls["histograms"] == {}
+    host.take_settings({"log": True})
+    layouts.keep("wanted")
+    assert not host.is_made
+    assert layouts.layouts["wanted"].controls["histograms"] == {"log": True}
+    explorer.window.raise_dock("histograms")
+    wait_idle(qtbot, explorer)
+    assert host.settings()["log"] is True
+    # Kept before anybody had seen it: as it is made.
+    layouts.take("unseen")
+    assert host.settings()["log"] is False
+    layouts.take("wanted")
+    assert host.settings()["log"] is True
+
+
+def test_the_palette_offers_settings_of_tabs_that_nobody_has_seen(qtbot: Any, explorer: Any) -> None:
+    window = explorer.window
+    assert "spectrum" in window.unmade
+    explorer.desk.show_palette()
+    palette = window.findChild(CommandPalette, "command-palette")
+    qtbot.keyClicks(palette.field, "fill radius")
+    assert "spectrum" in window.unmade
+    qtbot.waitUntil(lambda: palette.list.item(0).text().startswith("Fill: "))
+    assert window.unmade == ()
+    offered = [each.name for each in palette._entries if each.kind == "setting"]
+    assert len(offered) == len(set(offered))
+    assert {each.partition(":")[0] for each in offered} > {"Spectrum", "Fill", "Pyramid"}
+    qtbot.keyClick(palette.field, Qt.Key.Key_Return)
+    assert window.front_dock() == "fill"
+    wait_idle(qtbot, explorer)

@@ -316,7 +316,7 @@ def explorer(open_window, texture, qtbot):
 
 
 def dock_of(explorer):
-    return next(dock for dock in explorer.docks if dock.name == "explain")
+    return explorer.hosts["explain"].dock
 
 
 def answered(qtbot, explorer):

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtGui import QAction, QContextMenuEvent
 from PySide6.QtWidgets import QApplication, QListWidget, QMenu, QTableWidget, QWidget
 
-from tests.gui.conftest import ids, wait_idle
+from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.plain import TIP_WIDTH
 from texlab.widgets.tables import add_copying, list_text
@@ -38,6 +38,7 @@ def right_click(widget: QWidget) -> None:
 
 def test_everything_in_the_window(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
+    make_everything(explorer)
     # Every panel has a menu, wherever in it the button is pressed.
     for dock in explorer.docks:
         window.raise_dock(dock.name)

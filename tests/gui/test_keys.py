@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 import texlab
-from tests.gui.conftest import ids, wait_idle
+from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.window.stops import is_seen, stops
 
 if TYPE_CHECKING:
@@ -37,7 +37,8 @@ def on_screen(widget: QWidget) -> bool:
 
 def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
-    for dock in explorer.docks:
+    docks = explorer.docks
+    for dock in docks:
         window.raise_dock(dock.name)
         QApplication.processEvents()
         wait_idle(qtbot, explorer)
@@ -58,7 +59,7 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
             assert window._ring.isVisible()
             assert window._ring.around is here
         assert {each.objectName() for each in visited} == {each.objectName() for each in expected}
-        hidden = [other for other in explorer.docks if other is not dock]
+        hidden = [other for other in docks if other is not dock]
         assert not any(other.isAncestorOf(each) for other in hidden for each in visited)
         qtbot.keyClick(window.focusWidget(), TAB, SHIFT)
         assert window.focusWidget() is visited[-1]
@@ -118,6 +119,7 @@ def test_the_letters_of_every_menu_are_unique(explorer: Explorer) -> None:
         twice = {letter for letter in letters if letters.count(letter) > 1}
         assert not twice, f"{name}: {', '.join(sorted(twice))}"
 
+    make_everything(explorer)
     menus = explorer.window.findChildren(QMenu)
     assert {*explorer.window.menus.values()} < {*menus}
     for menu in menus:
@@ -126,6 +128,7 @@ def test_the_letters_of_every_menu_are_unique(explorer: Explorer) -> None:
 
 
 def test_everything_has_a_name(explorer: Explorer) -> None:
+    make_everything(explorer)
     unnamed = set()
     for widget in explorer.window.findChildren(QWidget):
         of_a_list = type(widget).__name__ == "QListView" and not widget.objectName()

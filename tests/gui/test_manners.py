@@ -467,7 +467,7 @@ def test_closing_while_columns_run_ends_their_threads(
 
 def test_the_palette_goes_to_panels_and_says_when_there_is_no_such_command(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
-    host = next(host for host in explorer.hosts if host.dock.name == "histograms")
+    host = explorer.hosts["histograms"]
     assert not host.seen
     for typed in ("zzz", "panel histogr"):
         qtbot.keyClick(window, Qt.Key.Key_K, CONTROL)

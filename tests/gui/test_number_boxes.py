@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QLocale, Qt
 from PySide6.QtTest import QTest
 
+from tests.gui.conftest import make_everything
 from texlab.style.numbers import parse_list, parse_number
 from texlab.widgets.number_box import NumberBox, ShareBox, WholeBox
 
@@ -159,6 +160,7 @@ def test_every_number_box_of_the_window_reads_both_signs(qtbot: Any, open_window
     explorer = open_window(str(texture), columns=None, wait=False)
     window = explorer.window
     qtbot.waitUntil(lambda: explorer.idle)
+    make_everything(explorer)
     boxes = [box for box in window.findChildren(NumberBox) if box.objectName()]
     names = {box.objectName() for box in boxes}
     assert {"scale-box"} <= names
@@ -184,6 +186,7 @@ def test_every_number_box_of_the_window_reads_both_signs(qtbot: Any, open_window
 
 
 def test_whole_boxes_of_the_window_show_plain_digits(explorer: Any) -> None:
+    make_everything(explorer)
     boxes = [box for box in explorer.window.findChildren(WholeBox) if box.objectName()]
     assert {"seed-box", "width-box", "height-box"} <= {box.objectName() for box in boxes}
     for box in boxes:

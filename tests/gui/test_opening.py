@@ -181,7 +181,7 @@ def test_parameters_of_another_method_are_not_taken() -> None:
 
 
 def test_a_dock_can_have_a_texture_opened(qtbot: Any, explorer: Explorer) -> None:
-    dock = explorer.docks[0]
+    dock = explorer.hosts["pyramid"].dock
     dock.intention.emit(Open("gallery:oriented-zebra"))
     wait_idle(qtbot, explorer)
     assert explorer.session.state.sample.source.name == "gallery:oriented-zebra"
@@ -206,7 +206,7 @@ def test_an_example_of_the_failure_gallery_is_opened_from_the_menu(qtbot: Any, e
     assert "letters" in {each.id for each in explorer.controller.column_scene(column.id).findings}
     # The panel shows it as soon as it is looked at.
     explorer.window.actions_by_name["panel-findings"].trigger()
-    dock = explorer.window.findChild(FindingsDock)
+    dock = explorer.hosts["findings"].dock
     qtbot.waitUntil(lambda: dock.message is None, timeout=20_000)
     rows = [dock.list.item(row).text() for row in range(dock.list.count())]
     row = rows.index("? Letters or symbols")

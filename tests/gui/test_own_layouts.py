@@ -86,7 +86,7 @@ def test_panels_tabs_and_controls_come_back(explorer: Explorer, qtbot: Any) -> N
     window.docks["maps"].close()
     window.docks["gallery"].close()
     window.raise_dock("histograms")
-    histograms = next(each for each in explorer.docks if each.name == "histograms")
+    histograms = explorer.hosts["histograms"].dock
     qtbot.waitUntil(lambda: not histograms.visibleRegion().isEmpty())
     controls = histograms.settings()
     log = next(name for name, value in controls.items() if value is False)

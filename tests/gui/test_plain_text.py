@@ -14,6 +14,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QComboBox, QLabel, QMessageBox, QTextEdit, QWidget
 
 import texlab
+from tests.gui.conftest import make_everything
 from texlab.widgets import plain
 from texlab_core.documents.record import save_result
 from texlab_core.engine.job import Job
@@ -157,6 +158,7 @@ def test_the_whole_window_shows_names_notes_and_errors_as_text(
     qtbot: Any, open_window: Any, evil_result: Path, evil_preset: Path, tmp_path: Path
 ) -> None:
     explorer = open_window(str(evil_result))
+    make_everything(explorer)
     window = explorer.window
     assert EVIL in window.windowTitle()
     assert_plain(window)

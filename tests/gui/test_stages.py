@@ -71,14 +71,15 @@ def test_the_scrubber_drives_the_tabs_of_the_window(explorer, qtbot):
     explorer.session.select(first)
     window.raise_dock("steps")
     wait_idle(qtbot, explorer)
-    steps = next(dock for dock in explorer.docks if dock.name == "steps")
+    steps = explorer.hosts["steps"].dock
     qtbot.keyClick(steps, Qt.Key.Key_Home)
     frames = controller.column_scene(first).frames
     assert len(frames) > 1
     assert controller.scene().stage is frames[0]
-    for dock in explorer.docks:
-        if isinstance(dock, TABS):
-            window.raise_dock(dock.name)
+    for name, host in explorer.hosts.items():
+        if issubclass(host.kind, TABS):
+            window.raise_dock(name)
+            dock = host.dock
             qtbot.waitUntil(dock.stage_button.isVisible)
             wait_idle(qtbot, explorer)
     # It belongs to its column, and to a run that still exists.

@@ -101,7 +101,7 @@ def in_front(qtbot: Any, explorer: Explorer, name: str, *, wait: bool = True) ->
     QApplication.processEvents()
     if wait:
         wait_idle(qtbot, explorer)
-    return next(each for each in explorer.docks if each.name == name)
+    return explorer.hosts[name].dock
 
 
 def test_every_tab_keeps_its_own_keys_and_no_others(qtbot: Any, everything: Explorer) -> None:
@@ -222,7 +222,7 @@ def in_front_of_two(qtbot: Any, explorer: Explorer, name: str) -> Any:
     explorer.window.raise_dock(name)
     QApplication.processEvents()
     wait_idle(qtbot, explorer)
-    return next(each for each in explorer.docks if each.name == name)
+    return explorer.hosts[name].dock
 
 
 def test_escape_in_sweeps_stops_the_sweep_and_nothing_else(qtbot: Any, explorer: Explorer) -> None:

@@ -223,7 +223,7 @@ def test_a_tab_without_a_picture_says_so(open_window, qtbot):
     explorer = open_window(None, wait=False)
     said = []
     explorer.controller.problem.connect(said.append)
-    for dock in explorer.docks:
-        explorer.window.docks[dock.name].hide()
+    for name in explorer.hosts:
+        explorer.window.docks[name].hide()
     explorer.tabs.take_front("copy")
     assert said == ["No tab is open: choose one, then take its picture."]

@@ -501,7 +501,7 @@ def tuner(open_window, texture, qtbot):
 
 
 def dock_of(explorer, name="thresholds"):
-    return next(dock for dock in explorer.docks if dock.name == name)
+    return explorer.hosts[name].dock
 
 
 def test_the_button_opens_the_dock_and_a_drag_is_one_step(tuner, qtbot):

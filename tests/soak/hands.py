@@ -252,7 +252,7 @@ class Hands:
             if bar.rect().contains(tab):
                 self.press(front, BUTTONS.LeftButton, bar.mapTo(front, tab))
                 return
-        self.explorer.window.show_dock(self.random.choice([each.name for each in self.explorer.docks]))
+        self.explorer.window.show_dock(self.random.choice(list(self.explorer.hosts)))
 
     def choose_texture(self, front: QWidget) -> None:
         tree = self.explorer.window.gallery.tree

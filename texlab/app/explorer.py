@@ -93,8 +93,8 @@ class Explorer(QObject):
         self.overlays = Overlays(self.workspace.columns, self)
         register_editors()
         dock_slots = Slots(1)
-        self.docks: list[Dock] = [make() for make in dock_classes()]
-        self.hosts = [DockHost(dock, dock_slots, self) for dock in self.docks]
+        self.hosts = {kind.name: DockHost(kind, dock_slots, self) for kind in dock_classes()}
+        """The docks by name, each made when it is first seen or asked for."""
         self.exchange = Exchange(window, settings, self.controller, self.opener)
         self.opener.locate_wanted = self.exchange.ask_locate
         self.desk = HelpDesk(window, self.session, config_dir() / "lessons")
@@ -107,7 +107,13 @@ class Explorer(QObject):
         )
         self.opener.layout_wanted = lambda layout: window.actions_by_name[f"layout-{layout}"].trigger()
         self.presenter = Presenter(
-            window, self.workspace, self.controller, settings, self.presets, self.overlays, self.hosts
+            window,
+            self.workspace,
+            self.controller,
+            settings,
+            self.presets,
+            self.overlays,
+            tuple(self.hosts.values()),
         )
         self.teacher = Teacher(
             window,
@@ -115,7 +121,7 @@ class Explorer(QObject):
             self.controller,
             self.presenter,
             self.autosave,
-            self.docks,
+            self.hosts,
             config_dir() / "lessons",
         )
         self.carrier = Carrier(
@@ -137,11 +143,11 @@ class Explorer(QObject):
         self._thrift = Thrift(self)
         window.set_workspace(self.workspace)
         self.stage = StageSettings(window, self.workspace, settings)
-        window.add_docks(self.docks)
+        window.add_docks(self.hosts)
         self.teacher.desk.watch_tabs()
-        self.own_layouts = OwnLayouts(window, self.docks, settings, self.opener.layout_wanted, self.workspace)
+        self.own_layouts = OwnLayouts(window, self.hosts, settings, self.opener.layout_wanted, self.workspace)
         window.actions_by_name["own-layouts"].triggered.connect(lambda _: self.own_layouts.ask())
-        self.teach_mode = TeachMode(window, self.workspace, self.session)
+        self.teach_mode = TeachMode(window, self.workspace, self.session, self.hosts)
         self.teacher.told.connect(self.teach_mode.notes.show_lesson)
         self.teach_mode.notes.show_lesson(self.teacher.scene)
         self.presenter.show_theme(themes.theme)
@@ -224,10 +230,10 @@ class Explorer(QObject):
         self.window.hide()
         self.controller.leave()
         self.teacher.leave_threads()
-        for host in self.hosts:
+        for host in self.hosts.values():
             host.leave()
         self.autosave.close()
-        for host in self.hosts:
+        for host in self.hosts.values():
             host.close()
         self.thumbnails.close()
         self.tuning.close()
@@ -244,9 +250,16 @@ class Explorer(QObject):
         self._thrift.look(idle=self.idle)
 
     @property
+    def docks(self) -> list[Dock]:
+        """All docks; those that nobody has seen are made now."""
+        return [host.dock for host in self.hosts.values()]
+
+    @property
     def idle(self) -> bool:
         """Whether nothing is computed and every visible dock has its answer."""
-        waiting = self.controller.busy or self.controller.measuring or any(host.busy for host in self.hosts)
+        waiting = (
+            self.controller.busy or self.controller.measuring or any(host.busy for host in self.hosts.values())
+        )
         return not waiting and self.session.state.sample is not None
 
     def _show_several(self, sources: Sequence[Source]) -> None:
@@ -289,18 +302,21 @@ class Explorer(QObject):
         # Its commands have their keys there too.
         self.workspace.apart.made.connect(lambda made: made.addActions([*window.actions_by_name.values()]))
         self.workspace.column_moved.connect(session.move_column)
-        for dock in self.docks:
-            dock.intention.connect(self.carrier.carry_out)
+        for host in self.hosts.values():
+            host.made.connect(self._connect_dock)
         self.presets.intention.connect(self.carrier.carry_out)
 
     def _take_tab(self, how: str, _: bool = False) -> None:
         self.tabs.take_front(how)
 
     def _open_tab(self, name: str, wanted: Mapping[str, Any]) -> None:
-        dock = next((each for each in self.docks if each.name == name), None)
         self.window.raise_dock(name)
+        dock = self.hosts[name].dock if name in self.hosts else None
         if dock is not None and (problems := dock.take_settings(wanted)):
             self.controller.problem.emit(f"Tab {dock.title}: {'; '.join(problems)}.")
+
+    def _connect_dock(self, dock: Dock) -> None:
+        dock.intention.connect(self.carrier.carry_out)
 
     def _connect_controls(self) -> None:
         """Connect what the user turns and drags."""

@@ -80,6 +80,9 @@ class Dock(OwnKeys, QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
 
+    def fold_controls(self, folded: bool) -> None:
+        """Leave the whole room to what is shown, or show the controls again; not every dock can."""
+
     def settings(self) -> dict[str, bool | int | float | str]:
         """Return how the controls stand, by name; :meth:`take_settings` takes it back."""
         return control_settings(self, f"{self.name}-")

@@ -99,7 +99,7 @@ class FramedDock(Dock):
     heavy: ClassVar[bool] = False
     """Whether its answers are as large as pictures, and go when they are out of date and out of sight."""
     folds: ClassVar[bool] = True
-    """Whether its controls can be folded away when one teaches."""
+    """Whether it leaves its room to the body when one teaches."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -247,6 +247,7 @@ class FramedDock(Dock):
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to the body, or show the controls again."""
+        folded = folded and self.folds
         self._fold.setVisible(not folded)
         self._told.setVisible(folded and self._readout is not None)
 

@@ -1,19 +1,26 @@
-"""Asks the docks' questions in the background and hands them the answers."""
+"""Makes the docks when they are first seen, asks their questions in the background, hands them the answers."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer
+from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
 
 from texlab.runs.worker import Task, Worker
 from texlab.state.scene import same_but_probe
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from PySide6.QtWidgets import QDockWidget, QWidget
+
     from texlab.docks.base import Dock, Question
     from texlab.runs.slots import Slots
     from texlab.state.scene import Scene
+    from texlab.style.theme import Theme
+    from texlab.widgets.control_settings import Setting
 
+LOOKS = frozenset((QEvent.Type.Show, QEvent.Type.Hide, QEvent.Type.Move, QEvent.Type.Resize))
 NOTHING_YET = "There is nothing to show yet."
 
 
@@ -24,11 +31,29 @@ class DockHost(QObject):
     asked about as soon as the answer is there, but not within ``dock.rest_ms`` of it: while a control is dragged,
     the pictures come first. A question is dropped when its dock goes out of sight: all docks share the places, and
     nobody who looks at one waits for what nobody sees.
+
+    Parameters
+    ----------
+    kind
+        A dock, or its class: then the dock is made when it is first seen in its ``frame``, or asked for.
+    slots
+        Places to compute in.
+
+    ``made(dock)`` once, before the dock is shown.
     """
 
-    def __init__(self, dock: Dock, slots: Slots, parent: QObject | None = None) -> None:
+    made = Signal(object)
+
+    def __init__(self, kind: Dock | type[Dock], slots: Slots, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.dock = dock
+        self.kind = kind
+        self.name = kind.name
+        self._dock: Dock | None = None
+        self._frame: QDockWidget | None = None
+        self._theme: Theme | None = None
+        # How the controls stand in a dock that was just made, and how they were wanted before.
+        self._first: dict[str, Setting] = {}
+        self._wanted: dict[str, Any] = {}
         self._worker: Worker | None = None
         self._slots = slots
         self._scene: Scene | None = None
@@ -46,19 +71,92 @@ class DockHost(QObject):
         self._look.setSingleShot(True)
         self._look.setInterval(0)
         self._look.timeout.connect(self._update)
+        if not isinstance(kind, type):
+            self._take(kind)
+
+    # Making.
+
+    @property
+    def dock(self) -> Dock:
+        """The dock, which is made now if nobody has seen it yet."""
+        if self._dock is None:
+            assert isinstance(self.kind, type)
+            dock = self.kind()
+            self._first = dock.settings()
+            if self._theme is not None:
+                dock.set_theme(self._theme)
+            self._take(dock)
+            self.made.emit(dock)
+            self._put()
+            wanted, self._wanted = self._wanted, {}
+            if wanted:
+                dock.take_settings(wanted)
+        assert self._dock is not None
+        return self._dock
+
+    @property
+    def is_made(self) -> bool:
+        """Whether there is a dock already."""
+        return self._dock is not None
+
+    def set_frame(self, frame: QDockWidget) -> None:
+        """Say where in the window the dock has its place; it is made when that is seen."""
+        self._frame = frame
+        frame.installEventFilter(self)
+        self._put()
+
+    def _take(self, dock: Dock) -> None:
+        self._dock = dock
         dock.installEventFilter(self)
         dock.asks.connect(self._update)
+
+    def _put(self) -> None:
+        """Put the dock into its frame."""
+        if self._dock is None or self._frame is None:
+            return
+        self._frame.setWidget(self._dock)
+        self._dock.show()
+        layout = self._frame.layout()
+        if layout is not None:
+            # It has its size at once: whoever made it may want to give it the keyboard.
+            layout.activate()
+
+    # What a dock that nobody has seen is told, and says.
+
+    def set_theme(self, theme: Theme) -> None:
+        """Repaint in another theme."""
+        self._theme = theme
+        if self._dock is not None:
+            self._dock.set_theme(theme)
+
+    def settings(self) -> dict[str, Any]:
+        """Return how the controls stand; empty while nobody has seen them and nothing else is wanted."""
+        return dict(self._wanted) if self._dock is None else self._dock.settings()
+
+    def take_settings(self, wanted: Mapping[str, Any]) -> None:
+        """Set what can be set; a dock that nobody has seen is made with it.
+
+        What :meth:`settings` returned before the dock was made brings back how the dock was made.
+        """
+        if self._dock is None:
+            self._wanted = dict(wanted)
+        else:
+            self._dock.take_settings(wanted or self._first)
+
+    # Showing.
 
     def show_scene(self, scene: Scene) -> None:
         """Take a newer scene."""
         before, self._scene = self._scene, scene
-        moved = before is not None and not self.dock.follows_pointer and same_but_probe(scene, before)
+        moved = before is not None and not self.kind.follows_pointer and same_but_probe(scene, before)
         if not moved:
             self._update()
-        if before is not None and not moved and self._holds and not self.seen and _is_about_others(scene, before):
+        if before is None or moved or self._dock is None or not self._holds or self.seen:
+            return
+        if _is_about_others(scene, before):
             # A tab behind another one would keep its pictures, and all that was computed from them, for good.
             self._asked, self._holds = None, False
-            self.dock.forget()
+            self._dock.forget()
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
@@ -80,29 +178,34 @@ class DockHost(QObject):
     @property
     def seen(self) -> bool:
         """Whether any part of the dock can be seen: Qt calls the tabs behind the front one visible, too."""
-        return self.dock.isVisible() and not self.dock.visibleRegion().isEmpty()
+        part: QWidget | None = self._frame if self._dock is None else self._dock
+        return part is not None and part.isVisible() and not part.visibleRegion().isEmpty()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Catch up when the dock comes into sight or goes: shown, hidden, its frame brought to the front."""
-        if event.type() == QEvent.Type.ParentChange and watched is self.dock:
-            frame = self.dock.parentWidget()
+        kind = event.type()
+        if kind == QEvent.Type.ParentChange and watched is self._dock:
+            frame = self._dock.parentWidget()
             if frame is not None:
                 frame.installEventFilter(self)
-        elif event.type() in (QEvent.Type.Show, QEvent.Type.Hide, QEvent.Type.Move, QEvent.Type.Resize):
+        elif kind in LOOKS:
             # The frame has its new place when the event has been handled.
             self._look.start()
         return super().eventFilter(watched, event)
 
     def _update(self) -> None:
         seen = self.seen
+        if self._dock is None and not seen:
+            return
+        dock = self.dock
         if seen is not self._was_seen:
             self._was_seen = seen
-            self.dock.set_seen(seen)
+            dock.set_seen(seen)
             if not seen:
                 self._drop()
         if self._scene is None or not seen:
             return
-        self.dock.show_scene(self._scene)
+        dock.show_scene(self._scene)
         if self._computing:
             self._dirty = True
             return
@@ -110,10 +213,10 @@ class DockHost(QObject):
             if not self._rest.isActive():
                 self._rest.start(self._rested.remainingTime())
             return
-        question = self.dock.question(self._scene)
+        question = dock.question(self._scene)
         if question is None:
             self._asked = None
-            self.dock.present_nothing(NOTHING_YET)
+            dock.present_nothing(NOTHING_YET)
             return
         if question.key == self._asked:
             return
@@ -122,7 +225,7 @@ class DockHost(QObject):
 
     def _ask(self, question: Question) -> None:
         if self._worker is None:
-            self._worker = Worker(self.dock.name, self._slots, self)
+            self._worker = Worker(self.name, self._slots, self)
             self._worker.finished.connect(self._answered)
             self._worker.failed.connect(self._refused)
 

@@ -33,17 +33,21 @@ def control_settings(widget: QWidget, prefix: str) -> dict[str, Setting]:
 def take_control_settings(widget: QWidget, prefix: str, wanted: Mapping[str, Any]) -> tuple[str, ...]:
     """Set controls by name, as a user would; return one clause for each that cannot be set."""
     problems = []
-    # A tab bar shows other controls, and a list may offer others.
-    order = {kind: place for place, kind in enumerate(_KINDS)}
-    found = {name: widget.findChild(QWidget, prefix + name) for name in wanted}
-    for name, each in sorted(found.items(), key=lambda item: _order(item[1], order)):
-        if each is None or not _take(each, wanted[name]):
-            problems.append(f"{name} cannot be set to {wanted[name]!r:.40}")
+    left = dict(wanted)
+    # A tab bar shows other controls, which may be made only then, and a list may offer others.
+    for kind in (QTabBar, QWidget):
+        found = {name: widget.findChild(kind, prefix + name) for name in left}
+        for name, each in sorted(found.items(), key=lambda item: _order(item[1])):
+            if each is None and kind is QTabBar:
+                continue
+            value = left.pop(name)
+            if each is None or not _take(each, value):
+                problems.append(f"{name} cannot be set to {value!r:.40}")
     return tuple(problems)
 
 
-def _order(widget: QWidget | None, order: Mapping[type[QWidget], int]) -> int:
-    return next((place for kind, place in order.items() if isinstance(widget, kind)), len(order))
+def _order(widget: QWidget | None) -> int:
+    return next((place for place, kind in enumerate(_KINDS) if isinstance(widget, kind)), len(_KINDS))
 
 
 def _value(widget: QWidget) -> Setting | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QPoint, Qt, Signal
+from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
 from PySide6.QtWidgets import QWidget
 
 from texlab.state.changes import with_method
@@ -16,7 +16,7 @@ from texlab_core.engine.params import describe
 from texlab_core.engine.run import versions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
     from texlab.state.session import Session
@@ -55,6 +55,12 @@ class HelpDesk(QObject):
         self.help: HelpWindow | None = None
         self.read_wanted: Callable[[Callable[[], Any], Callable[[Any], None]], None] = lambda read, done: None
         self._palette: CommandPalette | None = None
+        # One tab at a time, so that typing goes on.
+        self._more = QTimer(self)
+        self._more.setSingleShot(True)
+        self._more.setInterval(0)
+        self._more.timeout.connect(self._make_more)
+        self._late: tuple[str, ...] = ()
 
     def show_help(self, page: str) -> None:
         """Open a help page."""
@@ -80,6 +86,7 @@ class HelpDesk(QObject):
 
     def show_palette(self) -> None:
         """Open the command palette."""
+        self._late = self._window.unmade
         palette = CommandPalette(self._entries(), self._window)
         palette.destroyed.connect(self._forget_palette)
         self._palette = palette
@@ -87,6 +94,19 @@ class HelpDesk(QObject):
         self.read_wanted(self._read, self._found)
         palette.move(self._window.mapToGlobal(QPoint((self._window.width() - palette.width()) // 2, 80)))
         palette.show()
+        if self._late:
+            self._more.start()
+
+    def _make_more(self) -> None:
+        """Make the next tab that nobody has seen; offer the settings of all of them when they are there."""
+        if self._palette is None:
+            return
+        unmade = self._window.unmade
+        if unmade:
+            self._window.make_dock(unmade[0])
+            self._more.start()
+        else:
+            self._palette.add(self._settings(self._late))
 
     def _forget_palette(self) -> None:
         self._palette = None
@@ -133,10 +153,11 @@ class HelpDesk(QObject):
             session.select(next(each.id for each in state.columns if each.method == sweep.method))
         self.tab_wanted.emit("sweeps", {"ready-made": sweep.name})
 
-    def _settings(self) -> list[Entry]:
-        """Return the controls of the panels: each leads there."""
+    def _settings(self, names: Iterable[str]) -> list[Entry]:
+        """Return the controls of these panels: each leads there."""
         found = []
-        for name, dock in self._window.docks.items():
+        for name in names:
+            dock = self._window.docks[name]
             line = dock.widget().findChild(QWidget, f"{name}-controls")
             for control in () if line is None else line.findChildren(QWidget, options=_DIRECT):
                 if control.accessibleName() and control.focusPolicy() != Qt.FocusPolicy.NoFocus:
@@ -161,7 +182,7 @@ class HelpDesk(QObject):
         found += [
             Entry("preset", preset.name, preset.note, partial(bar.chosen.emit, preset)) for preset in bar.presets
         ]
-        found += self._settings()
+        found += self._settings(each for each in window.docks if each not in self._late)
         found += [
             Entry(
                 "recent file", action.text().replace("\\", "/").rpartition("/")[2], action.text(), action.trigger
@@ -177,6 +198,7 @@ class HelpDesk(QObject):
 
     def close(self) -> None:
         """Close the help window."""
+        self._more.stop()
         if self.help is not None:
             self.help.leave()
             self.help.close()

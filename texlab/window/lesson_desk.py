@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from texlab.docks.base import Dock
+    from texlab.docks.host import DockHost
     from texlab.runs.controller import Controller
     from texlab.state.intentions import OpenLesson
     from texlab.window.main_window import MainWindow
@@ -34,11 +34,11 @@ class LessonDesk:
     """
 
     def __init__(
-        self, window: MainWindow, controller: Controller, docks: Mapping[str, Dock], folder: Path
+        self, window: MainWindow, controller: Controller, hosts: Mapping[str, DockHost], folder: Path
     ) -> None:
         self._window = window
         self._controller = controller
-        self._docks = docks
+        self._hosts = hosts
         self.folder = folder
         # What waits to be written, by name; it is taken by the thread that writes.
         self._waiting: dict[str, tuple[Lesson, ImageInput | None]] = {}
@@ -53,7 +53,7 @@ class LessonDesk:
     def watch_tabs(self) -> None:
         """Take note of the tab that is in front, from now on: the window has its tabs."""
         for name, frame in self._window.docks.items():
-            if name in self._docks and name != LESSONS:
+            if name in self._hosts and name != LESSONS:
                 frame.visibilityChanged.connect(partial(self._saw, name))
 
     def step(self, name: str, sentence: str) -> LessonStep:
@@ -128,7 +128,7 @@ class LessonDesk:
     def _draft(self) -> Draft:
         name = self._window.front_dock()
         name = self._tab if name == LESSONS else name
-        dock = self._docks.get(name)
+        host = self._hosts.get(name)
         controller, session = self._controller, self._controller.session
         probe = controller.probe
         kept = probe is not None and probe.pinned
@@ -136,8 +136,8 @@ class LessonDesk:
             session.state,
             session.selected_id,
             (probe.column_id, probe.row, probe.column) if probe is not None and kept else None,
-            "" if dock is None else name,
-            {} if dock is None else dock.settings(),
+            "" if host is None else name,
+            {} if host is None else host.dock.settings(),
             self._window.actions_by_name["tile"].isChecked(),
         )
 

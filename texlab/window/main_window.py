@@ -35,12 +35,13 @@ from texlab.window.stops import FocusRing, next_stop
 from texlab.window.toolbar import LAYOUTS, ToolBar
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
 
     from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
+    from texlab.docks.host import DockHost
     from texlab.state.session import Session
     from texlab.storage.settings import Settings
     from texlab.style.theme import Theme, ThemeSource
@@ -89,6 +90,7 @@ class MainWindow(QMainWindow):
         self.themes = themes
         self.actions_by_name = make_actions(self)
         self.docks: dict[str, QDockWidget] = {}
+        self._hosts: Mapping[str, DockHost] = {}
         self.strip = PanelStrip(self, self.docks, settings)
         self.layouts = Layouts(self, self.docks, settings, themes, self.strip)
         self._workspace: Workspace | None = None
@@ -147,26 +149,25 @@ class MainWindow(QMainWindow):
         self.big_panel.set_stage(workspace)
         self.message_bar.raise_()
 
-    def add_docks(self, docks: list[Dock]) -> None:
+    def add_docks(self, hosts: Mapping[str, DockHost]) -> None:
         """Put the docks, as tabs, below the images."""
+        self._hosts = hosts
         first: QDockWidget | None = None
-        for each in docks:
-            dock = QDockWidget(each.title, self)
-            dock.setObjectName(f"tab-{each.name}")
-            dock.setWidget(each)
-            set_tip(dock, each.help)
-            set_tip(dock.toggleViewAction(), each.help)
-            dock.toggleViewAction().triggered.connect(partial(self._shown_by_menu, each.name))
+        for name, host in hosts.items():
+            dock = QDockWidget(host.kind.title, self)
+            dock.setObjectName(f"tab-{name}")
+            set_tip(dock, host.kind.help)
+            set_tip(dock.toggleViewAction(), host.kind.help)
+            dock.toggleViewAction().triggered.connect(partial(self._shown_by_menu, name))
+            host.set_frame(dock)
+            host.made.connect(self._adopt_menus)
             self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
             if first is None:
                 first = dock
             else:
                 self.tabifyDockWidget(first, dock)
-            self.docks[each.name] = dock
-        for menu in QApplication.topLevelWidgets():
-            if isinstance(menu, QMenu) and menu.parent() is None:
-                # pyqtgraph makes its menus without a parent, and nobody would delete them.
-                menu.setParent(self, menu.windowFlags())
+            self.docks[name] = dock
+        self._adopt_menus()
         self._fill_docks_menu()
         if first is not None:
             docks_height = panel_sizes(self.width(), self.height())[2]
@@ -177,6 +178,12 @@ class MainWindow(QMainWindow):
         for dock in self.docks.values():
             dock.topLevelChanged.connect(self.strip.refresh)
         self.strip.start()
+
+    def _adopt_menus(self) -> None:
+        for menu in QApplication.topLevelWidgets():
+            if isinstance(menu, QMenu) and menu.parent() is None:
+                # pyqtgraph makes its menus without a parent, and nobody would delete them.
+                menu.setParent(self, menu.windowFlags())
 
     def _make_menus(self) -> None:
         self.menus: dict[str, QMenu] = {}
@@ -308,6 +315,7 @@ class MainWindow(QMainWindow):
             self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
+            self.make_dock(name)
         return dock is not None
 
     def take_stage(self, name: str = "") -> None:
@@ -332,7 +340,17 @@ class MainWindow(QMainWindow):
                 self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
+            self.make_dock(name)
             dock.widget().setFocus()
+
+    def make_dock(self, name: str) -> Dock | None:
+        """Return the tab of this name, which is made now if nobody has seen it."""
+        return self._hosts[name].dock if name in self._hosts else None
+
+    @property
+    def unmade(self) -> tuple[str, ...]:
+        """Names of the tabs that nobody has seen or asked for."""
+        return tuple(name for name, host in self._hosts.items() if not host.is_made)
 
     def _shown_by_menu(self, name: str, shown: bool) -> None:
         if shown:

@@ -17,10 +17,10 @@ from texlab.widgets.plain import Label, set_tip
 from texlab.window.toolbar import LAYOUTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Callable, Collection, Mapping
 
     from texlab.columns.workspace import Workspace
-    from texlab.docks.base import Dock
+    from texlab.docks.host import DockHost
     from texlab.storage.settings import Settings
     from texlab.window.main_window import MainWindow
 
@@ -117,7 +117,7 @@ class OwnLayouts(QObject):
 
     Parameters
     ----------
-    window, docks
+    window, hosts
         What is arranged.
     settings
         Where they are kept.
@@ -132,14 +132,14 @@ class OwnLayouts(QObject):
     def __init__(
         self,
         window: MainWindow,
-        docks: Sequence[Dock],
+        hosts: Mapping[str, DockHost],
         settings: Settings,
         arrange: Callable[[str], None],
         workspace: Workspace,
     ) -> None:
         super().__init__(window)
         self._window = window
-        self._docks = docks
+        self._hosts = hosts
         self._settings = settings
         self._arrange = arrange
         self._workspace = workspace
@@ -157,8 +157,8 @@ class OwnLayouts(QObject):
         """Return how the window is arranged at present."""
         window = self._window
         base = self._settings.text("layout", "explore")
-        front = next((each.name for each in self._docks if not each.visibleRegion().isEmpty()), "")
-        controls = {each.name: each.settings() for each in self._docks}
+        front = next((name for name, host in self._hosts.items() if host.seen), "")
+        controls = {name: host.settings() for name, host in self._hosts.items()}
         state = bytes(window.saveState().data())
         apart = tuple(places_to_json(self._workspace.apart.places, self._workspace.order))
         base = base if base in LAYOUTS else "explore"
@@ -181,9 +181,10 @@ class OwnLayouts(QObject):
         window = self._window
         window.strip.set_open(True)
         window.restoreState(QByteArray(layout.state))
-        for dock in self._docks:
+        for name, host in self._hosts.items():
             # What another exemplar or method does not offer stays as it is.
-            dock.take_settings(layout.controls.get(dock.name, {}))
+            if name in layout.controls:
+                host.take_settings(layout.controls[name])
         front = window.docks.get(layout.front)
         if front is not None and not front.isHidden():
             front.raise_()

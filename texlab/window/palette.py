@@ -104,11 +104,13 @@ class CommandPalette(QDialog):
         self.field.setFocus()
 
     def add(self, entries: Sequence[Entry]) -> None:
-        """Find these too, which had to be read first."""
+        """Find these too, which were not there at first; what was chosen with the arrow keys stays chosen."""
         self._entries = [*self._entries, *entries]
-        chosen = self.list.currentRow()
+        row = self.list.currentRow()
+        chosen = self._shown[row] if 0 < row < len(self._shown) else None
         self._fill(self.field.text())
-        self.list.setCurrentRow(min(max(chosen, 0), self.list.count() - 1))
+        if chosen is not None:
+            self.list.setCurrentRow(next((at for at, each in enumerate(self._shown) if each is chosen), 0))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Move the choice with the arrow keys while typing."""

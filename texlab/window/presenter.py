@@ -126,7 +126,7 @@ class Presenter(QObject):
         """Repaint in another theme."""
         self._workspace.set_theme(theme)
         for host in self._hosts:
-            host.dock.set_theme(theme)
+            host.set_theme(theme)
 
     def say_exemplar_pixel(self, row: int, column: int) -> None:
         """Say what is under the pointer in the exemplar."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QKeySequence
 
-from texlab.docks.frame import FramedDock
 from texlab.style.text_size import next_zoom
 from texlab.window.chalk import Chalk
 from texlab.window.layouts import HEIGHTS, SIDES
@@ -16,7 +15,11 @@ from texlab.window.notes_window import NotesWindow
 from texlab.window.overlay import Overlay
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab.columns.workspace import Workspace
+    from texlab.docks.base import Dock
+    from texlab.docks.host import DockHost
     from texlab.state.session import Session
     from texlab.window.main_window import MainWindow
 
@@ -29,8 +32,11 @@ ON_GLASS = ("ink", "halo", "spotlight")
 class TeachMode(QObject):
     """Carries out the commands of teaching; what it hides comes back with another layout."""
 
-    def __init__(self, window: MainWindow, workspace: Workspace, session: Session) -> None:
+    def __init__(
+        self, window: MainWindow, workspace: Workspace, session: Session, hosts: Mapping[str, DockHost]
+    ) -> None:
         super().__init__(window)
+        self._hosts = hosts
         self._window = window
         self._workspace = workspace
         self._session = session
@@ -72,6 +78,8 @@ class TeachMode(QObject):
         # It comes with every change, and also when only another column is chosen.
         session.selected.connect(lambda _: self._show_columns())
         session.changed.connect(lambda *_: self._show_columns())
+        for host in hosts.values():
+            host.made.connect(self._fold_one)
         self.show_layout()
 
     @property
@@ -92,7 +100,7 @@ class TeachMode(QObject):
         window.toolbar.setVisible(not self.on)
         window.statusBar().setVisible(not self.on)
         self._workspace.exemplar.set_quiet(self.on)
-        self._fold(self.on and self._folded)
+        self._fold()
         if not self.on:
             window.actions_by_name["tab-alone"].setChecked(False)
             for name in ON_GLASS:
@@ -173,11 +181,15 @@ class TeachMode(QObject):
     def toggle_controls(self) -> None:
         """Show the controls of the tabs, or their pictures alone."""
         self._folded = not self._folded
-        self._fold(self.on and self._folded)
+        self._fold()
 
-    def _fold(self, folded: bool) -> None:
-        for dock in self._window.findChildren(FramedDock):
-            dock.fold_controls(folded and dock.folds)
+    def _fold(self) -> None:
+        for host in self._hosts.values():
+            if host.is_made:
+                self._fold_one(host.dock)
+
+    def _fold_one(self, dock: Dock) -> None:
+        dock.fold_controls(self.on and self._folded)
 
     def set_tab_alone(self, alone: bool) -> None:
         """Give the open tab the room of the pictures too, or take it back."""

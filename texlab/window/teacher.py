@@ -31,10 +31,11 @@ from texlab_core.documents.lessons import MAX_STEPS
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from texlab.columns.workspace import Workspace
-    from texlab.docks.base import Dock
+    from texlab.docks.host import DockHost
     from texlab.runs.controller import Controller
     from texlab.runs.lesson_runner import Opened
     from texlab.state.session import Aside
@@ -66,7 +67,7 @@ class Teacher(QObject):
         controller: Controller,
         presenter: Presenter,
         autosave: Autosave,
-        docks: list[Dock],
+        hosts: Mapping[str, DockHost],
         folder: Path,
     ) -> None:
         super().__init__(window)
@@ -76,7 +77,7 @@ class Teacher(QObject):
         self._session = controller.session
         self._presenter = presenter
         self._autosave = autosave
-        self._docks = {each.name: each for each in docks}
+        self._hosts = hosts
         self._aside: Aside | None = None
         self._first_id = 1
         self._opened: Opened | None = None
@@ -86,7 +87,7 @@ class Teacher(QObject):
         self._first_place = 0
         self._to_show: LessonStep | None = None
         self._scene = LessonScene(folder=folder)
-        self.desk = LessonDesk(window, controller, self._docks, folder)
+        self.desk = LessonDesk(window, controller, hosts, folder)
         self._versions = Versions()
         self.runner = LessonRunner(controller.shared, self)
         self.runner.opened.connect(self._begin)
@@ -196,8 +197,8 @@ class Teacher(QObject):
         # The keyboard stays where it is: Page Down goes on, whatever is in front.
         if not self._window.show_dock(name):
             self._controller.problem.emit(f"The window has no tab called {name}.")
-        elif step.tab is not None and (problems := self._docks[name].take_settings(step.tab.settings)):
-            self._controller.problem.emit(f"Tab {self._docks[name].title}: {'; '.join(problems)}.")
+        elif step.tab is not None and (problems := self._hosts[name].dock.take_settings(step.tab.settings)):
+            self._controller.problem.emit(f"Tab {self._hosts[name].kind.title}: {'; '.join(problems)}.")
 
     def _painted(self) -> None:
         """Show zoom, place and marks once the pictures of the step are there."""

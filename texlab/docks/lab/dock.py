@@ -63,34 +63,46 @@ class LabDock(Dock):
         self.bar.setUsesScrollButtons(True)
         self.bar.setDrawBase(False)
         self.pages = QStackedWidget()
+        # Each is made when it is first chosen.
         self._pages: dict[str, LabPage] = {}
-        for make in PAGES:
-            page = make()
-            self._pages[page.name] = page
-            index = self.bar.addTab(page.title)
-            self.bar.setTabData(index, page.name)
-            self.bar.setTabToolTip(index, tip_text(page.help))
-            self.pages.addWidget(page)
-            page.asks.connect(self.asks)
-            page.intention.connect(self.intention)
+        self._theme: Theme | None = None
+        self._folded = False
+        for each in PAGES:
+            index = self.bar.addTab(each.title)
+            self.bar.setTabData(index, each.name)
+            self.bar.setTabToolTip(index, tip_text(each.help))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self.bar)
         layout.addWidget(self.pages, 1)
+        self._show_page()
         self.bar.currentChanged.connect(self._changed)
 
     @property
     def page(self) -> LabPage:
         """The chosen experiment."""
-        return self._pages[self.bar.tabData(self.bar.currentIndex())]
+        kind = PAGES[self.bar.currentIndex()]
+        page = self._pages.get(kind.name)
+        if page is None:
+            page = self._pages[kind.name] = kind()
+            if self._theme is not None:
+                page.set_theme(self._theme)
+            page.fold_controls(self._folded)
+            page.asks.connect(self.asks)
+            page.intention.connect(self.intention)
+            self.pages.addWidget(page)
+        return page
 
     def choose(self, name: str) -> None:
         """Choose an experiment by its name."""
-        self.bar.setCurrentIndex(list(self._pages).index(name))
+        self.bar.setCurrentIndex([each.name for each in PAGES].index(name))
 
-    def _changed(self, index: int) -> None:
-        self.pages.setCurrentIndex(index)
+    def _show_page(self) -> None:
+        self.pages.setCurrentWidget(self.page)
+
+    def _changed(self, _: int) -> None:
+        self._show_page()
         self.asks.emit()
 
     # The contract of docks: what the chosen experiment says.
@@ -128,8 +140,15 @@ class LabDock(Dock):
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
+        self._theme = theme
         for page in self._pages.values():
             page.set_theme(theme)
+
+    def fold_controls(self, folded: bool) -> None:
+        """Leave the whole room to what the experiments show, or show their controls again."""
+        self._folded = folded
+        for page in self._pages.values():
+            page.fold_controls(folded)
 
     def set_seen(self, seen: bool) -> None:
         """Take note of whether it can be seen."""
