@@ -12,7 +12,6 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QMenu
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
-from texlab.docks.findings.dock import FindingsDock
 from texlab.runs.exemplar import prepare
 from texlab.state.changes import restored
 from texlab.state.intentions import Open
