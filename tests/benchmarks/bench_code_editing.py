@@ -32,7 +32,7 @@ def test_dragging_an_energy(qtbot: Any, tmp_path: Any, texture: str, size: int) 
         qtbot.waitUntil(lambda: explorer.idle and all(map(warm, every_need())), timeout=60_000)
         panel = explorer.window.docks["code"]
         panel.raise_()
-        dock: CodeDock = panel.widget()
+        dock: CodeDock = explorer.hosts["code"].dock
         qtbot.waitUntil(lambda: dock.answer is not None and explorer.idle, timeout=60_000)
         (column,) = explorer.session.state.columns
         explorer.controller.run_column(column.id)

@@ -282,7 +282,7 @@ def open_code(qtbot: Any, open_window: Callable[..., Explorer], texture: Path) -
     panel = explorer.window.docks["code"]
     panel.show()
     panel.raise_()
-    dock = panel.widget()
+    dock = explorer.hosts["code"].dock
     assert isinstance(dock, CodeDock)
     qtbot.waitUntil(dock.isVisible)
     wait_idle(qtbot, explorer)

@@ -179,7 +179,7 @@ def test_the_zebra_is_one_click_away(qtbot: Any, explorer: Explorer) -> None:
     panel = explorer.window.docks["gabor"]
     panel.show()
     panel.raise_()
-    dock = panel.widget()
+    dock = explorer.hosts["gabor"].dock
     assert isinstance(dock, GaborDock)
     qtbot.waitUntil(lambda: dock.answer is not None)
     qtbot.mouseClick(dock.zebra, Qt.MouseButton.LeftButton)

@@ -99,7 +99,7 @@ def test_everything_in_the_window(qtbot: Any, explorer: Explorer) -> None:
     before, wanted = ids(explorer), best_first(palette._entries, "de bonet fig 11")[0]
     palette.close()
     wanted.run()
-    panel = next(each for each in explorer.docks if each.name == "sweeps").panel
+    panel = explorer.hosts["sweeps"].dock.panel
     qtbot.waitUntil(lambda: panel.chosen_sweep is not None)
     assert panel.chosen_sweep.name == "de-bonet-fig-11"
     assert explorer.session.selected_column.method == "de-bonet"

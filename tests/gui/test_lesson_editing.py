@@ -241,7 +241,7 @@ def test_a_lesson_is_edited_while_it_is_given(
     monkeypatch.setattr(lesson_runner, "_opened", lambda *args: (read.append(args[0]), usual_open(*args))[1])
     window.raise_dock("lessons")
     wait_idle(qtbot, explorer)
-    dock = window.docks["lessons"].widget()
+    dock = explorer.hosts["lessons"].dock
     dock.edit_button.click()
     editor = dock.editor
 
@@ -296,7 +296,7 @@ def test_words_typed_just_before_the_window_closes_are_written(
     give(qtbot, explorer, "small")
     explorer.window.raise_dock("lessons")
     wait_idle(qtbot, explorer)
-    dock = explorer.window.docks["lessons"].widget()
+    dock = explorer.hosts["lessons"].dock
     dock.edit_button.click()
     note = dock.editor.words.fields["note"]
     note.selectAll()

@@ -125,7 +125,7 @@ def test_a_step_sets_everything_and_leaving_brings_everything_back(
     assert probe is not None
     assert (probe.column_id, probe.row, probe.column, probe.pinned) == (ids(explorer)[1], 6, 5, True)
     assert explorer.window.front_dock() == "pyramid"
-    assert explorer.window.docks["pyramid"].widget().settings()["kind"] == "laplacian"
+    assert explorer.hosts["pyramid"].dock.settings()["kind"] == "laplacian"
     assert explorer.window.actions_by_name["tile"].isChecked()
     assert explorer.workspace.exemplar.pane._marks
     bar = explorer.window.lesson_bar
@@ -180,7 +180,7 @@ def test_a_ready_step_shows_what_was_kept_without_running_anything(
     explorer.carrier.carry_out(GoToStep(0))
     wait_idle(qtbot, explorer)
     # The slider too: its values were made ahead.
-    dock = explorer.window.docks["lessons"].widget()
+    dock = explorer.hosts["lessons"].dock
     explorer.window.raise_dock("lessons")
     wait_idle(qtbot, explorer)
     qtbot.keyClick(dock.words.slider, Qt.Key.Key_Right)
@@ -255,7 +255,7 @@ def test_from_the_first_start_the_bundled_lesson_is_given_with_keys_alone(
     window, session = explorer.window, explorer.session
     mine = session.state
     press(qtbot, window, Qt.Key.Key_L, Qt.KeyboardModifier.ControlModifier)
-    dock = window.docks["lessons"].widget()
+    dock = explorer.hosts["lessons"].dock
     qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0 and window.focusWidget() is dock.list)
     wanted = item_of(dock, "heeger-bergen")
     while dock.list.currentItem() is not wanted:
@@ -284,7 +284,7 @@ def test_from_the_first_start_the_bundled_lesson_is_given_with_keys_alone(
 
 def test_one_click_gives_a_lesson(qtbot: Any, explorer: Explorer, small: str) -> None:
     explorer.window.raise_dock("lessons")
-    dock = explorer.window.docks["lessons"].widget()
+    dock = explorer.hosts["lessons"].dock
     qtbot.waitUntil(lambda: dock.list.topLevelItemCount() > 0)
     item = item_of(dock, small)
     dock.list.scrollToItem(item)
@@ -330,7 +330,7 @@ def test_what_the_window_shows_becomes_a_lesson_of_ones_own(qtbot: Any, explorer
     # From the tab with the button, what was looked at before it is kept.
     window.raise_dock("lessons")
     wait_idle(qtbot, explorer)
-    qtbot.mouseClick(window.docks["lessons"].widget().save_button, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(explorer.hosts["lessons"].dock.save_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: explorer.teacher.scene.lesson is not None and explorer.teacher.scene.place == 1)
     wait_ready(qtbot, explorer)
     lesson = read_lesson(config_dir() / "lessons" / "my-lesson.json")

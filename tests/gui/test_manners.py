@@ -148,7 +148,7 @@ def test_the_help_of_a_dock_does_not_cover_its_plots(qtbot: Any, explorer: Explo
     frame = window.docks["histograms"]
     frame.raise_()
     wait_idle(qtbot, explorer)
-    body = frame.widget().body
+    body = explorer.hosts["histograms"].dock.body
     try:
         for widget, shown in ((frame, True), (body, False)):
             centre = widget.rect().center() if widget is body else QPoint(20, 8)

@@ -147,7 +147,7 @@ def test_a_click_on_a_name_opens_the_panels_and_another_closes_them(
 
     click("Histograms")
     assert strip.is_open
-    dock = window.docks["histograms"].widget()
+    dock = explorer.hosts["histograms"].dock
     qtbot.waitUntil(lambda: dock.height() > 100 and not dock.visibleRegion().isEmpty())
     assert painted_area(explorer) < before
     click("Pyramid")

@@ -96,7 +96,7 @@ def check_zoom_reaches_plots_and_mosaics(teaching: Any, qtbot: Any) -> None:
     window = teaching.window
     window.raise_dock("histograms")
     wait_idle(qtbot, teaching)
-    plot = window.docks["histograms"].widget().findChild(Plot)
+    plot = teaching.hosts["histograms"].dock.findChild(Plot)
     before = capitals(plot.axes["bottom"].style["tickFont"])
     window.actions_by_name["text-larger"].trigger()
     assert capitals(plot.axes["bottom"].style["tickFont"]) > before
@@ -183,7 +183,7 @@ def check_other_tabs_and_panels_are_one_key_away(teaching: Any, qtbot: Any) -> N
         assert not overlay.isVisible()
         assert window.docks[name].widget() is content
         assert not window.docks[name].isVisible()
-    pyramid = window.docks["pyramid"].widget()
+    pyramid = teaching.hosts["pyramid"].dock
     window.raise_dock("pyramid")
     qtbot.waitUntil(lambda: seen(pyramid.body))
     assert not pyramid.controls.isVisible()
@@ -192,7 +192,7 @@ def check_other_tabs_and_panels_are_one_key_away(teaching: Any, qtbot: Any) -> N
     actions["tab-controls"].trigger()
     assert not pyramid.controls.isVisible()
     window.raise_dock("steps")
-    assert window.docks["steps"].widget().slider.isVisible()
+    assert teaching.hosts["steps"].dock.slider.isVisible()
 
 
 def check_the_tab_alone_has_the_room_of_the_pictures(teaching: Any, qtbot: Any) -> None:
@@ -230,7 +230,7 @@ def test_leaving_teach_puts_everything_back(qtbot: Any, explorer: Any) -> None:
             "fonts": fonts,
             "front": window.front_dock(),
             "open": window.strip.is_open,
-            "controls": window.docks["histograms"].widget().controls.isVisible(),
+            "controls": explorer.hosts["histograms"].dock.controls.isVisible(),
         }
 
     before = state()

@@ -522,7 +522,7 @@ def test_tuning_brings_the_threshold_table_to_the_front(
     for column_id, front in ((second, "thresholds"), (first, "histograms")):
         explorer.session.select(column_id)
         explorer.window.actions_by_name["layout-tune"].trigger()
-        shown = explorer.window.docks[front].widget()
+        shown = explorer.hosts[front].dock
         qtbot.waitUntil(lambda shown=shown: not shown.visibleRegion().isEmpty(), timeout=5_000)
     explorer.window.actions_by_name["layout-explore"].trigger()
     wait_idle(qtbot, explorer)

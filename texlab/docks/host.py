@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QDeadlineTimer, QEvent, QObject, QTimer, Signal
+from PySide6.QtWidgets import QWidget
 
 from texlab.runs.worker import Task, Worker
 from texlab.state.scene import same_but_probe
@@ -12,7 +13,7 @@ from texlab.state.scene import same_but_probe
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from PySide6.QtWidgets import QDockWidget, QWidget
+    from PySide6.QtWidgets import QDockWidget
 
     from texlab.docks.base import Dock, Question
     from texlab.runs.slots import Slots
@@ -103,6 +104,9 @@ class DockHost(QObject):
         """Say where in the window the dock has its place; it is made when that is seen."""
         self._frame = frame
         frame.installEventFilter(self)
+        if self._dock is None:
+            # A frame with nothing in it does not keep to the heights that it is given.
+            frame.setWidget(QWidget())
         self._put()
 
     def _take(self, dock: Dock) -> None:
@@ -114,7 +118,10 @@ class DockHost(QObject):
         """Put the dock into its frame."""
         if self._dock is None or self._frame is None:
             return
+        before = self._frame.widget()
         self._frame.setWidget(self._dock)
+        if before is not None:
+            before.deleteLater()
         self._dock.show()
         layout = self._frame.layout()
         if layout is not None:
