@@ -10,11 +10,16 @@ import pytest
 from texlab_core.engine.inputs import Crop
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.sheets.own_line import own_measures
+from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
     from conftest import Texlab
 
 GRAVEL = ("gallery:stochastic-gravel", "--crop", "64x64+40+40")
+
+
+def test_the_budget_is_the_searchs_own(texlab: Texlab) -> None:
+    assert f"(default {DEFAULT_BUDGET})" in " ".join(texlab("tune", "--help").out.split())
 
 
 def test_the_preset_makes_the_result_that_was_tried(texlab: Texlab) -> None:

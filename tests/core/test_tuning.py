@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
 from statistics import NormalDist
@@ -29,10 +30,19 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.method import DeBonetParams
-from texlab_core.sheets.tuning import SEARCH_SEEDS, _rounds, kind_of, tune
+from texlab_core.sheets.tuning import _rounds, kind_of, tune
 from texlab_core.sheets.tuning_final import FINAL, SHORT_FINAL, Final, Tried, best_at_the_end, compared, promising
-from texlab_core.sheets.tuning_search import Measured, best_of, grid_values, knob_rounds, place_of, value_at
-from texlab_core.sheets.tuning_thresholds import threshold_rounds
+from texlab_core.sheets.tuning_moves import MOST_OFTEN, Effect, Move, moves, together
+from texlab_core.sheets.tuning_search import (
+    SEARCH_SEEDS,
+    Measured,
+    best_of,
+    grid_values,
+    knob_rounds,
+    place_of,
+    value_at,
+)
+from texlab_core.sheets.tuning_thresholds import layout_of, threshold_rounds
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -118,17 +128,17 @@ def test_the_rows_to_vary_are_known_where_no_trial_ran() -> None:
     base = Job(method="de-bonet", inputs={"exemplar": exemplar}, size=(32, 32))
     model = run(base).model
     asked = _rounds(base, (), AnalysisCache(), None)(Measured(params=base.params, kept=-4.0, gained=0.3), -3.1)
-    phase, params = next(asked)
-    while phase != "rows":
-        phase, params = asked.send([])
-    changed = {len(each.to_json()["thresholds"]) for each in params}
+    wanted = next(asked)
+    while wanted.phase != "rows":
+        wanted = asked.send([])
+    changed = {len(each.to_json()["thresholds"]) for each in wanted.params}
     assert changed == {len(model.feature_names)}
     # All rows, twice if the first turn helped; it does not when nothing is answered.
     rows = 0
-    while phase == "rows":
+    while wanted.phase == "rows":
         rows += 1
-        phase, params = asked.send([])
-    assert (rows, phase) == (model.depth, "cells")
+        wanted = asked.send([])
+    assert (rows, wanted.phase) == (model.depth, "cells")
 
 
 def test_a_larger_limit_and_a_larger_budget_never_make_it_worse(job: Job) -> None:
@@ -229,20 +239,20 @@ def test_places_of_a_range_and_back() -> None:
 
 
 def test_the_end_takes_no_more_runs_than_it_says(job: Job) -> None:
-    found = tune(job, ("x", "y", "n"), limit=-3.1, budget=300)
+    found = tune(job, ("x", "y", "n"), limit=-3.1, budget=600)
     end = [each for each in found.trials if each.phase == "fresh seeds"]
     assert found.fresh == FINAL.seeds
     assert len({each.seed for each in end}) == FINAL.seeds
-    assert len(end) <= FINAL.runs == 15 * 5 + 6 * 11
+    assert len(end) <= FINAL.runs == 21 * 4 + 9 * 8 + 5 * 36
     by_params: dict[HillParams, int] = {}
     for each in end:
         by_params[each.params] = by_params.get(each.params, 0) + 1
     # The start and the finalists have all seeds, the others the first ones; what is found is a finalist.
-    assert sorted(by_params.values(), reverse=True)[:6] == [16] * 6
-    assert set(by_params.values()) == {16, 5}
-    assert by_params[found.found] == 16
+    assert sorted(by_params.values(), reverse=True)[:9] == [48] * 5 + [12] * 4
+    assert set(by_params.values()) == {48, 12, 4}
+    assert by_params[found.found] == 48
     own = [each.kept for each in end if each.params == found.found]
-    assert found.kept == pytest.approx(sum(own) / 16)
+    assert found.kept == pytest.approx(sum(own) / 48)
 
 
 def tried(x: float, kept: tuple[float, ...], gained: tuple[float, ...]) -> Tried:
@@ -260,10 +270,19 @@ def test_chances_are_of_paired_differences() -> None:
     assert one.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((0 + 1) / 2 / 2)))
     assert two.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((2 + 1) / 2 / 2)))
     assert one.gain == pytest.approx(0.01)
-    # V is larger by .01 in every seed, of which .005 cannot be seen.
+    # V is larger by .01 in every seed; a thousandth is no gain.
     assert one.larger == two.larger == 1.0
-    (unseen,) = compared([tried(0.3, (-4.3, -3.9), (0.304, 0.304))], START, None)
+    (unseen,) = compared([tried(0.3, (-4.3, -3.9), (0.3009, 0.3009))], START, None)
     assert unseen.larger == 0.0
+    # That it holds again for means over other seeds is less sure: their own chance comes on top.
+    again, _ = compared([steady, scattered], START, None, 4)
+    assert again.within == pytest.approx(NormalDist().cdf(0.1 / math.sqrt((0 + 1) / 2 * (1 / 2 + 1 / 4))))
+    # What scatters little is not blamed for those that scatter much.
+    alone, _ = compared([steady, scattered], START, None, group=lambda params: params.x)
+    assert alone.within == 1.0
+    # Those with fewer seeds are compared with the same ones of the start.
+    long = tried(0.5, (*START.kept, 9.0), (*START.gained, 9.0))
+    assert compared([steady], long, None) == compared([steady], START, None)
     assert (one.sure, one.much) == (one.within, pytest.approx(one.within * 0.01))
     # Against a fixed limit it is not paired: D itself counts.
     (fixed,) = compared([steady], START, -4.0)
@@ -283,9 +302,9 @@ def test_what_is_promising_is_likely_or_gains_much() -> None:
     # A setting with the numbers of another one is no other one.
     assert len(promising([likely, tried(0.7, likely.kept, likely.gained)], START, None, 9)) == 1
     assert promising([broken], START, None, 3) == []
-    # Of those of a kind two go on as long as there are others.
+    # Of those of a kind only some go on as long as there are others.
     family = [tried(0.1 + place / 100, (-4.5 - place / 100, -4.1), (0.33, 0.32)) for place in range(4)]
-    chosen = promising([*family, much, worse], START, None, 4, kind=lambda params: params.x < 0.15)
+    chosen = promising([*family, much, worse], START, None, 4, kind=lambda params: params.x < 0.15, alike=2)
     assert [each.params.x < 0.15 for each in chosen].count(True) == 2
     assert len(promising(family, START, None, 4, kind=lambda _: 0)) == 4
 
@@ -307,7 +326,11 @@ def test_the_end_suggests_what_is_surest_or_has_most() -> None:
     assert best_at_the_end([tried(0.3, (-4.2, -3.8), (0.30, 0.30))], START, None) is START
     # Nothing reaches the limit: that which is nearest.
     assert best_at_the_end([little, lucky], START, -9.0) is little
-    assert Final(2, 3, 1, 5).runs == 3 * 3 + 2 * 2
+    assert Final(((2, 3), (1, 5))).runs == 3 * 3 + 2 * 2
+    assert Final(((2, 3), (1, 5))).seeds == 5
+    # Of those that nearly surely hold again, the one with the largest V.
+    least, more = tried(0.1, (-5.2, -4.8) * 5, (0.31,) * 10), tried(0.2, (-5.1, -4.7) * 5, (0.35,) * 10)
+    assert best_at_the_end([least, more, lucky], tried(0.5, (-4.2, -3.8) * 5, (0.30,) * 10), None) is more
 
 
 def test_ranks() -> None:
@@ -323,11 +346,11 @@ def test_ranks() -> None:
 def _drive(rounds, measure) -> list[tuple[str, Measured]]:
     tried = []
     try:
-        phase, asked = next(rounds)
+        wanted = next(rounds)
         while len(tried) < 4000:
-            answer = [measure(each) for each in asked]
-            tried += [(phase, each) for each in answer]
-            phase, asked = rounds.send(answer)
+            answer = [measure(each) for each in wanted.params]
+            tried += [(wanted.phase, each) for each in answer]
+            wanted = rounds.send(answer)
     except StopIteration:
         pass
     return tried
@@ -348,9 +371,9 @@ def test_thresholds_go_from_alpha_and_side_to_rows_to_cells() -> None:
     start = measure(DeBonetParams())
     tried = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
     phases = [phase for place, (phase, _) in enumerate(tried) if place == 0 or tried[place - 1][0] != phase]
-    # Where other conditions made D smaller, patches are looked at again.
-    wanted_phases = ["alpha and coarsest side", "patches", "conditions", "patches"]
-    assert phases == [*wanted_phases, "alpha and coarsest side", "rows", "cells"]
+    # From the start's layout and from the best other one.
+    climbs = ["moves", "combinations", "rows"]
+    assert phases == ["alpha and coarsest side", "patches", "layouts", *climbs, *climbs, "cells"]
     best = best_of([each for _, each in tried], -3.9, start)
     assert best.params.coarsest_side == 2
     assert not best.params.fit_filters
@@ -360,6 +383,61 @@ def test_thresholds_go_from_alpha_and_side_to_rows_to_cells() -> None:
         assert abs(math.log(float(got[k - 1, names.index(name)]) / value)) < math.log(4)
     again = _drive(threshold_rounds(start, lambda _: (2, names), -3.9, Streams(3)), measure)
     assert [each.params for _, each in again] == [each.params for _, each in tried]
+
+
+def test_moves_are_the_single_changes_that_keep_the_layout() -> None:
+    params = DeBonetParams(alpha=0.3, beta=1.0)
+    found = moves(params, 3)
+    assert {each.what for each in found} == {
+        "beta", "channels", "orientations", "filters", "alpha", "row 1", "row 2", "row 3",
+    }  # fmt: skip
+    assert (("beta", 1.0),) not in [each.changes for each in found]
+    alphas = [dict(each.changes)["alpha"] for each in found if each.what == "alpha"]
+    # None twice, none beyond the slider's linear part, not the present one.
+    assert alphas == [0.15, 0.225, 0.39, 0.5]
+    for each in found:
+        assert layout_of(params.replace(**dict(each.changes))) == layout_of(params)
+
+
+def test_what_makes_d_smaller_pays_for_what_makes_v_larger() -> None:
+    def row(k: int) -> Move:
+        return Move(f"row {k}", row=k, factor=2.0)
+
+    strict, loose, both, bad = row(1), row(2), Move("row 1", row=1, factor=0.5), row(3)
+    effects = [
+        Effect(strict, -0.3, -0.001), Effect(loose, 0.1, 0.03), Effect(both, -0.25, 0.001), Effect(bad, 0.9, -0.1),
+        Effect(row(4), math.nan, 9.0),
+    ]  # fmt: skip
+    found = together(effects, (0.0, 0.0), -0.04, 8)
+    # By addition: -.15 and +.031 goes before -.2 and +.029; the two of row 1 never go together.
+    assert [frozenset(each) for each in found[:2]] == [frozenset({loose, both}), frozenset({strict, loose})]
+    assert not any({strict, both} <= set(each) or row(4) in each for each in found)
+    # Where what they were made from has a D that is larger by .18, only the surer one is within the limit.
+    assert set(together(effects, (0.16, 0.0), 0.0, 1)[0]) == {strict, loose}
+    assert together(effects[:1], (0.0, 0.0), 0.0, 8) == []
+    many = [Effect(row(k), -0.01 * k, 0.001 * k) for k in range(1, 12)]
+    often = Counter(each for chosen in together(many, (0.0, 0.0), 0.0, 20) for each in chosen)
+    assert max(often.values()) == MOST_OFTEN
+
+
+def test_a_combination_of_rows_is_found_that_no_single_row_gives() -> None:
+    """D and V of the table alone: row 1 pays for row 2, and each of them alone is no gain."""
+    names = ("luminance/laplacian",)
+
+    def measure(params: DeBonetParams) -> Measured:
+        if layout_of(params) != layout_of(DeBonetParams()):
+            return Measured(params=params, kept=0.0, gained=0.0)
+        one, two = (
+            float(params.thresholds.matrix(params.alpha, params.beta, 2, names)[k, 0]) / 0.15 for k in range(2)
+        )
+        tight, loose = 1 - min(one, 1), math.log(two)
+        return Measured(params=params, kept=-4 - tight / 2 + loose / 5, gained=0.4 - tight / 50 + loose / 20)
+
+    start = measure(DeBonetParams())
+    tried = _drive(threshold_rounds(start, lambda _: (2, names), start.kept, Streams(3)), measure)
+    for phase, holds in (("moves", False), ("combinations", True)):
+        better = [each for what, each in tried if what == phase and each.kept < -4 and each.gained > 0.4]
+        assert bool(better) is holds, phase
 
 
 def test_knobs_are_searched_to_the_top_of_a_smooth_hill() -> None:

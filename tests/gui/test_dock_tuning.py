@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dock_scenes import check_controls
+from dock_scenes import check_controls, shown
 from PySide6.QtCore import QPointF, Qt
 from stub_method import StubParams, exemplar, stub  # noqa: F401
 
@@ -194,6 +194,29 @@ def bench(qtbot, monkeypatch):
     made = Bench(qtbot)
     yield made
     made.close()
+
+
+def test_trials_of_a_search_are_drawn_together(qtbot):
+    dock = shown(qtbot, TuningDock(), 900, 260)
+    cells = tuple(shown_of(-3 - k / 10, 0.4, level=k / 10, index=k) for k in range(9))
+    given = exemplar()
+
+    def show(count, status="running", **more):
+        dock.show_scene(Scene(exemplar=given, tuning=TuningScene(status=status, cells=cells[:count]), **more))
+        return len(dock.points)
+
+    assert show(0, "idle") == 0
+    # The first one at once, those that follow in one go.
+    assert show(1) == 1
+    assert [show(count) for count in (2, 3, 5)] == [1, 1, 1]
+    assert dock.status.text() == "5 runs so far"
+    dock._redraw.timeout.emit()
+    assert len(dock.points) == 5
+    # What else there is to see is drawn when it comes, and so is the end.
+    assert show(6, points=(shown_of(-1, 0.9),)) == 7
+    assert [show(count) for count in (6, 7)] == [6, 6]
+    assert show(9, "finished") == 9
+    assert not dock._redraw.isActive()
 
 
 def place_of(dock, point):

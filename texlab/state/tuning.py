@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from texlab.state.sweeps import CellsScene
+from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
     from texlab_core.sheets.tuning import Tuning
@@ -27,7 +28,7 @@ class TuningPlan:
 
     limit: float | Literal["start"]
     knobs: tuple[str, ...] = ()
-    budget: int = 480
+    budget: int = DEFAULT_BUDGET
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ import dataclasses
 import math
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal
 
 from texlab_core.engine.cache import AnalysisCache
@@ -23,8 +24,8 @@ from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.subject import PreparedCache
 from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
 from texlab_core.sheets.tuning_final import FINAL, FINAL_FROM, SHORT_FINAL, Tried, best_at_the_end, promising
-from texlab_core.sheets.tuning_search import Measured, knob_rounds
-from texlab_core.sheets.tuning_thresholds import threshold_rounds
+from texlab_core.sheets.tuning_search import DEFAULT_BUDGET, SEARCH_SEEDS, Measured, knob_rounds
+from texlab_core.sheets.tuning_thresholds import MOST_SEEDS, layout_of, threshold_rounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -39,11 +40,7 @@ if TYPE_CHECKING:
 KEPT = "discriminability"
 GAINED = "visual-difference"
 DEFAULT_LIMIT = -3.1
-# Runs: alpha, coarsest side and rows take about 100 of them, single cells the others.
-DEFAULT_BUDGET = 480
 MAX_BUDGET = 5000
-# Every setting is tried with this many seeds, the job's own first: D scatters by .15 from seed to seed.
-SEARCH_SEEDS = 2
 
 Limit = float | Literal["start"]
 
@@ -57,7 +54,7 @@ class Trial(Measured):
     index
         Place in the order of asking.
     phase
-        Part of the search that asked for it: "start", "alpha and coarsest side", "rows", "fresh seeds".
+        Part of the search that asked for it: "start", "alpha and coarsest side", "layouts", "fresh seeds".
     seed
         Of its random numbers.
     kept, gained
@@ -243,6 +240,11 @@ class _Search:
         self.found += found
         return found
 
+    def tried_so_far(self, params: Params) -> Tried:
+        """Return what is known of parameters with the seeds of the search, the first ones that are all known."""
+        known = list(takewhile(lambda seed: (params, seed) in self.known, self.seeds))
+        return self.tried(params, known or self.seeds[:SEARCH_SEEDS])
+
     def tried(self, params: Params, seeds: Sequence[int]) -> Tried:
         """Return what is known of parameters with several seeds; NaN where the budget did not reach."""
         known = [self.known.get((params, seed)) for seed in seeds]
@@ -311,7 +313,7 @@ def tune(
     limit
         Largest D that is allowed; "start" for that of ``base``.
     budget
-        Number of runs, 24 .. 5000; at 128 -> 256 two cores make about eight a second. No more are made, and fewer
+        Number of runs, 24 .. 5000; at 128 -> 256 two cores make about thirty a second. No more are made, and fewer
         when nothing is left to try.
     on_trial
         Called in this thread with every finished run (and its cell with the picture), in the order of finishing.
@@ -361,8 +363,8 @@ def tune(
     # Checked before anything runs.
     rounds = _rounds(base, knobs, cache, should_stop)
     seeds = _seeds(base)
-    search.seeds = tuple(seeds[:SEARCH_SEEDS])
-    start = search.means("start", [base.params], search.seeds, 0)[0]
+    search.seeds = tuple(seeds[:MOST_SEEDS])
+    start = search.means("start", [base.params], search.seeds[:SEARCH_SEEDS], 0)[0]
     if not start.usable:
         title = find_measure(KEPT).title
         why = (
@@ -372,20 +374,20 @@ def tune(
     allowed = start.kept if limit == "start" else float(limit)
     asked = rounds(start, allowed)
     try:
-        phase, params = next(asked)
+        wanted = next(asked)
         while len(search.trials) < budget - final.runs:
-            answer = search.means(phase, params, search.seeds, final.runs)
-            phase, params = asked.send(answer)
+            seeds_wanted = search.seeds[: wanted.seeds]
+            wanted = asked.send(search.means(wanted.phase, wanted.params, seeds_wanted, final.runs))
     except StopIteration:
         pass
     finally:
         asked.close()
-    return _decide(search, base.params, limit, seeds[SEARCH_SEEDS:], final, tuple(knobs))
+    return _decide(search, base.params, limit, seeds[MOST_SEEDS:], final, tuple(knobs))
 
 
 def _seeds(base: Job) -> list[int]:
     """Return the seeds of the search, the job's own first, then the fresh ones; all differ."""
-    count = SEARCH_SEEDS - 1 + FINAL.seeds
+    count = MOST_SEEDS - 1 + FINAL.seeds
     drawn = Streams(base.seed)("tuning seeds").choice(MAX_SEED - 1, count, replace=False)
     # Those from the job's own on are moved up by one.
     return [base.seed, *(int(each) + (each >= base.seed) for each in drawn)]
@@ -429,6 +431,11 @@ def kind_of(params: Params) -> Hashable:
     return tuple(value for name, value in vars(params).items() if name not in own)
 
 
+def _cut(found: Tried, count: int) -> Tried:
+    """Return what came of the first seeds."""
+    return Tried(found.params, found.kept[:count], found.gained[:count])
+
+
 def _decide(
     search: _Search,
     start: Params,
@@ -439,15 +446,20 @@ def _decide(
 ) -> Tuning:
     """Measure the most promising ones and the start again, on seeds that the search never saw, and choose."""
     bound = None if limit == "start" else float(limit)
-    own = [search.tried(each.params, search.seeds) for each in search.found]
-    chosen = promising(own, search.tried(start, search.seeds), bound, final.candidates, kind_of)
-    for count, most in ((final.first, final.finalists), (final.seeds, final.finalists)):
+    own_layout = layout_of(start)
+
+    def group(params: Params) -> Hashable:
+        return layout_of(params) == own_layout
+
+    choose = partial(promising, limit=bound, kind=kind_of, group=group)
+    base = search.tried_so_far(start)
+    own = [search.tried_so_far(each) for each in dict.fromkeys(each.params for each in search.found)]
+    chosen = choose([_cut(each, len(base.kept)) for each in own], base, count=final.stages[0][0])
+    for (_, count), (most, _) in zip(final.stages, (*final.stages[1:], final.stages[-1]), strict=True):
         search.means("fresh seeds", [start, *(each.params for each in chosen)], seeds[:count], 0)
         base = search.tried(start, seeds[:count])
-        chosen = promising(
-            [search.tried(each.params, seeds[:count]) for each in chosen], base, bound, most, kind_of
-        )
-    best = best_at_the_end(chosen, base, bound)
+        chosen = choose([search.tried(each.params, seeds[:count]) for each in chosen], base, count=most)
+    best = best_at_the_end(chosen, base, bound, group)
     if search.on_progress is not None:
         search.on_progress(1.0)
     return Tuning(

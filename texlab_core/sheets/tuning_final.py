@@ -27,36 +27,42 @@ class Final:
 
     Parameters
     ----------
-    candidates, first
-        So many settings with so many seeds.
-    finalists, seeds
-        So many of them with all seeds.
+    stages
+        (settings, seeds): so many of those that are left, and the start, with so many seeds in all.
     """
 
-    candidates: int
-    first: int
-    finalists: int
-    seeds: int
+    stages: tuple[tuple[int, int], ...]
+
+    @property
+    def seeds(self) -> int:
+        """How many seeds decide."""
+        return self.stages[-1][1]
 
     @property
     def runs(self) -> int:
         """Most runs that it takes, those of the start among them."""
-        return (self.candidates + 1) * self.first + (self.finalists + 1) * (self.seeds - self.first)
+        before, runs = 0, 0
+        for settings, seeds in self.stages:
+            runs += (settings + 1) * (seeds - before)
+            before = seeds
+        return runs
 
 
-FINAL = Final(candidates=14, first=5, finalists=5, seeds=16)
+FINAL = Final(((20, 4), (8, 12), (4, 48)))
 # Of settings that differ in single thresholds only, so many are measured again.
-ALIKE = 2
-# Of V: what is less does not show in two digits.
-LEAST_GAIN = 0.005
+ALIKE = 5
+# Of V: what is less is no gain.
+LEAST_GAIN = 0.001
+# What holds is to hold when somebody tries it again with so many seeds, as surely as this.
+AGAIN, SURE = 16, 0.9
 # Of small budgets.
-SHORT_FINAL = Final(candidates=4, first=3, finalists=4, seeds=3)
-FINAL_FROM = 300
+SHORT_FINAL = Final(((4, 3),))
+FINAL_FROM = 600
 
 
 @dataclass(frozen=True)
 class Tried:
-    """A setting with what came of it, seed by seed; the seeds are those of the start, in the same order.
+    """A setting with what came of it, seed by seed; the seeds are the first ones of the start, in the same order.
 
     Parameters
     ----------
@@ -110,32 +116,47 @@ class Ahead:
         return self.within * max(0.0, self.gain)
 
 
-def compared(found: Sequence[Tried], start: Tried, limit: float | None) -> list[Ahead]:
+def compared(
+    found: Sequence[Tried],
+    start: Tried,
+    limit: float | None,
+    again: int = 0,
+    group: Callable[[Params], Hashable] = lambda _: None,
+) -> list[Ahead]:
     """Compare settings with the start, seed by seed.
 
     With the same seed two settings often have the same layout, so that their difference scatters far less than
-    either of them. How much it does is estimated for each setting from its own differences, and from those of all.
+    either of them. How much it does is estimated for each setting from its own differences, and from those of its
+    group.
 
     Parameters
     ----------
     found, start
-        Measured with the same seeds, at least two.
+        Measured with the same seeds, at least two; the start with as many as any other, or more.
     limit
         Of D; None for that of the start.
+    again
+        The chances are those that it holds for the means over so many other seeds; 0 for the true means.
+    group
+        Settings of a group scatter alike.
     """
     kept = [
         [own - (start.kept[place] if limit is None else limit) for place, own in enumerate(each.kept)]
         for each in found
     ]
-    gained = [[own - other for own, other in zip(each.gained, start.gained, strict=True)] for each in found]
-    usual = [_pooled(each) for each in (kept, gained)]
+    gained = [[own - other for own, other in zip(each.gained, start.gained, strict=False)] for each in found]
+    groups = [group(each.params) for each in found]
+
+    def usual(values: Sequence[Sequence[float]], place: int) -> float:
+        return _pooled([own for own, which in zip(values, groups, strict=True) if which == groups[place]])
+
     return [
         Ahead(
-            within=_chance(-fmean(below), _deviation(below, usual[0])),
-            larger=_chance(fmean(above) - LEAST_GAIN, _deviation(above, usual[1])),
+            within=_chance(-fmean(below), _deviation(below, usual(kept, place), again)),
+            larger=_chance(fmean(above) - LEAST_GAIN, _deviation(above, usual(gained, place), again)),
             gain=fmean(above),
         )
-        for below, above in zip(kept, gained, strict=True)
+        for place, (below, above) in enumerate(zip(kept, gained, strict=True))
     ]
 
 
@@ -150,9 +171,13 @@ def _pooled(groups: Sequence[Sequence[float]]) -> float:
     return math.fsum(map(_squares, groups)) / freedom if freedom else 0.0
 
 
-def _deviation(values: Sequence[float], usual: float) -> float:
-    """Return the standard error of a mean; the usual variance counts as one more value."""
-    return math.sqrt((_squares(values) + usual) / len(values) / len(values))
+def _deviation(values: Sequence[float], usual: float, again: int) -> float:
+    """Return how far a mean is from the true one, or from that of ``again`` other values.
+
+    The usual variance counts as one more value.
+    """
+    share = 1 / len(values) + (1 / again if again else 0)
+    return math.sqrt((_squares(values) + usual) / len(values) * share)
 
 
 def _chance(ahead: float, deviation: float) -> float:
@@ -169,12 +194,13 @@ def promising(
     count: int,
     kind: Callable[[Params], Hashable] = lambda params: params,
     alike: int = ALIKE,
+    group: Callable[[Params], Hashable] = lambda _: None,
 ) -> list[Tried]:
     """Return up to ``count`` settings that may well be better than the start.
 
     Parameters
     ----------
-    found, start, limit
+    found, start, limit, group
         As in :func:`compared`.
     kind
         What settings that are nearly the same have in common: at most ``alike`` of a kind are taken as long as
@@ -183,21 +209,21 @@ def promising(
     Returns
     -------
     list
-        The surest ones where the limit is the start's. Else by turns the surest one, and the one with the largest
-        gain times its chance; where none has any chance, those nearest to the limit. Of settings with the same
-        numbers (a knob that changes nothing) the first.
+        By turns the surest one, and the one with the largest gain times its chance; where none has any chance,
+        those nearest to the limit. Of settings with the same numbers (a knob that changes nothing) the first.
     """
     different: dict[tuple[tuple[float, ...], tuple[float, ...]], Tried] = {}
     for each in found:
         if each.usable and each.params != start.params:
             different.setdefault((each.kept, each.gained), each)
     usable = list(different.values())
-    ahead = compared(usable, start, limit)
-    ranks = [each.means.rank(fmean(start.kept) if limit is None else limit) for each in usable]
+    ahead = compared(usable, start, limit, group=group)
+    ranks = [each.means.rank(fmean(start.kept[: len(each.kept)]) if limit is None else limit) for each in usable]
     places = range(len(usable))
-    orders = [sorted(places, key=lambda place: (ahead[place].sure, *ranks[place]), reverse=True)]
-    if limit is not None:
-        orders.append(sorted(places, key=lambda place: (ahead[place].much, *ranks[place]), reverse=True))
+    orders = [
+        sorted(places, key=lambda place: (ahead[place].sure, *ranks[place]), reverse=True),
+        sorted(places, key=lambda place: (ahead[place].much, *ranks[place]), reverse=True),
+    ]
     chosen: list[int] = []
     for turn in zip(*orders, strict=True):
         chosen += [place for place in dict.fromkeys(turn) if place not in chosen]
@@ -211,11 +237,17 @@ def promising(
     return (first + rest)[:count]
 
 
-def best_at_the_end(found: Sequence[Tried], start: Tried, limit: float | None) -> Tried:
+def best_at_the_end(
+    found: Sequence[Tried],
+    start: Tried,
+    limit: float | None,
+    group: Callable[[Params], Hashable] = lambda _: None,
+) -> Tried:
     """Return what to suggest: the start unless another one has a larger V with D within the limit.
 
-    Of several the surest where the limit is the start's, else that with the largest V; where nothing is within the
-    limit, the start among them, that which is nearest to it.
+    Where the limit is the start's, of those that are nearly sure to hold again that with the largest V, without
+    any the surest; else that with the largest V. Where nothing is within the limit, the start among them, that
+    which is nearest to it.
     """
     allowed = fmean(start.kept) if limit is None else limit
     everything = [start, *(each for each in found if each.usable)]
@@ -223,6 +255,10 @@ def best_at_the_end(found: Sequence[Tried], start: Tried, limit: float | None) -
         each for each in everything[1:] if fmean(each.kept) <= allowed and fmean(each.gained) > fmean(start.gained)
     ]
     if limit is None and better:
-        ahead = compared(better, start, None)
-        return better[max(range(len(better)), key=lambda place: (ahead[place].sure, ahead[place].gain))]
+        ahead = compared(better, start, None, AGAIN, group)
+
+        def worth(place: int) -> tuple[float, float]:
+            return min(ahead[place].sure, SURE), ahead[place].gain
+
+        return better[max(range(len(better)), key=worth)]
     return max(everything, key=lambda each: each.means.rank(allowed))

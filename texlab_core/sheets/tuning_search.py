@@ -6,13 +6,12 @@ import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from texlab_core.engine.params import Params
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
-    from texlab_core.engine.params import Field
+    from texlab_core.engine.params import Field, Params
     from texlab_core.engine.streams import Streams
 
 # Places of a first look at one knob, and at two together.
@@ -42,8 +41,22 @@ class Measured:
         return (2, self.gained, -self.kept) if self.kept <= limit else (1, -self.kept, self.gained)
 
 
-# Yields a phase and parameters to try; is sent those that were measured (fewer when the budget ends).
-Rounds = Generator[tuple[str, list[Params]], Sequence[Measured], None]
+# Runs: about 330 of them are the end's.
+DEFAULT_BUDGET = 1500
+# Every setting is tried with this many seeds, the job's own first: D scatters by .15 from seed to seed.
+SEARCH_SEEDS = 2
+
+
+class Asked(NamedTuple):
+    """What a search wants to know: means of D and V of parameters over the first so many seeds."""
+
+    phase: str
+    params: Sequence[Params]
+    seeds: int = SEARCH_SEEDS
+
+
+# Is sent what was measured (fewer when the budget ends).
+Rounds = Generator[Asked, Sequence[Measured], None]
 
 
 def best_of(found: Sequence[Measured], limit: float, best: Measured) -> Measured:
@@ -72,11 +85,13 @@ def knob_rounds(start: Measured, fields: Sequence[Field], limit: float, streams:
     count = ALONE if len(fields) == 1 else TOGETHER
     grid = [grid_values(each, count) for each in fields[:2]]
     names = [each.name for each in fields[:2]]
-    found = yield "grid", _with(best.params, [dict(zip(names, each, strict=True)) for each in product(*grid)])
+    found = yield Asked(
+        "grid", _with(best.params, [dict(zip(names, each, strict=True)) for each in product(*grid)])
+    )
     best = best_of(found, limit, best)
     for each in fields[2:]:
         values = [{each.name: value} for value in grid_values(each, ALONE)]
-        best = best_of((yield f"along {each.name}", _with(best.params, values)), limit, best)
+        best = best_of((yield Asked(f"along {each.name}", _with(best.params, values))), limit, best)
     step = 0.5 / (count - 1)
     turn = 0
     while step >= FINEST:
@@ -86,7 +101,7 @@ def knob_rounds(start: Measured, fields: Sequence[Field], limit: float, streams:
             knob = fields[int(place)]
             here = place_of(knob, getattr(best.params, knob.name))
             values = [{knob.name: value_at(knob, here + side * step)} for side in (-1, 1)]
-            best = best_of((yield "steps", _with(best.params, values)), limit, best)
+            best = best_of((yield Asked("steps", _with(best.params, values))), limit, best)
         turn += 1
         if best is before:
             step /= 2

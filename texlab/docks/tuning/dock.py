@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout
 
 from texlab.docks.base import Question
@@ -23,7 +23,7 @@ from texlab.docks.tuning.points import (
     zone_lines,
 )
 from texlab.state.intentions import RunTuning, StopTuning, TakeCell
-from texlab.state.scene import Scene
+from texlab.state.scene import Scene, are_same
 from texlab.state.tuning import TuningPlan
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.picture_area import PictureArea
@@ -32,6 +32,7 @@ from texlab.widgets.plots import SERIES, Plot
 from texlab_core.measures.registry import find_measure
 from texlab_core.sheets.own_line import own_measures
 from texlab_core.sheets.sweep import Cell
+from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,8 +41,9 @@ if TYPE_CHECKING:
     from texlab.widgets.plots import Role
     from texlab_core.engine.inputs import ImageInput
 
-# Runs of a search: about a minute at 128 -> 256 on two quiet cores.
-BUDGET = 480
+BUDGET = DEFAULT_BUDGET
+# A search makes dozens of points a second; drawing them all anew takes as long as making two.
+REDRAW_MS = 300
 # Width of the picture and what is told of it.
 TOLD = 220
 
@@ -59,6 +61,10 @@ class TuningDock(FramedDock):
         """Make the controls, the plot, and the place of the picture."""
         self._scene = Scene()
         self._drawn: tuple[Any, ...] = ()
+        self._redraw = QTimer(self)
+        self._redraw.setSingleShot(True)
+        self._redraw.setInterval(REDRAW_MS)
+        self._redraw.timeout.connect(self._show_all)
         self.points: list[Placed] = []
         self.over: Placed | None = None
         self._build_line()
@@ -123,10 +129,21 @@ class TuningDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Plot what there is, and show how far the search is."""
-        self._scene = scene
+        before, self._scene = self._scene, scene
         if scene.exemplar is None:
             return
         self.show_body()
+        self._show_state()
+        # Only trials have come: they are drawn together.
+        if scene.tuning.running and before.tuning.running and _same_but_tuning(scene, before):
+            if not self._redraw.isActive():
+                self._redraw.start()
+        else:
+            self._show_all()
+
+    def _show_all(self) -> None:
+        scene = self._scene
+        self._redraw.stop()
         column = scene.selected
         replace_items(self.knobs, [] if column is None else knob_choices(column.method))
         groups = groups_of(scene)
@@ -135,6 +152,7 @@ class TuningDock(FramedDock):
         own = self._own.get(D)
         replace_items(self.limit, limit_choices(own))
         self._draw()
+        # What can be tuned may be another list now.
         self._show_state()
 
     def question(self, scene: Scene) -> Question | None:
@@ -264,3 +282,12 @@ class TuningDock(FramedDock):
         if self.over is not None:
             chosen = self._scene.selected_id
             self.intention.emit(TakeCell(self.over.shown.cell, (chosen, self.over.shown.cell.index)))
+
+
+def _same_but_tuning(scene: Scene, other: Scene) -> bool:
+    """Whether nothing has come to be seen here but points of a search."""
+    return (
+        are_same(scene.columns, other.columns)
+        and scene.selected_id == other.selected_id
+        and all(getattr(scene, name) is getattr(other, name) for name in ("points", "sweep", "exemplar"))
+    )
