@@ -16,7 +16,7 @@ from tests.core.batch_tools import die_at_first, die_when_large, files_of, shape
 from texlab_core.batch import cluster
 from texlab_core.batch.cluster import Cluster
 from texlab_core.batch.places import InProcess
-from texlab_core.batch.processes import Processes
+from texlab_core.batch.processes import UNBORN, Processes
 from texlab_core.batch.running import run_batch, run_jobs
 from texlab_core.engine.job import Job
 from texlab_core.errors import Cancelled, InputError
@@ -209,6 +209,36 @@ def test_where_no_processes_can_be_started_is_one_sentence(monkeypatch: pytest.M
         InputError, match=r"^No processes can be started here \(No such file or directory\); use only"
     ):
         list(run_jobs(iter(jobs()), place=Processes(2)))
+
+
+UNGUARDED = """
+import sys
+from pathlib import Path
+from tests.core.batch_tools import small_plan
+from texlab_core.batch.processes import Processes
+from texlab_core.batch.running import run_batch
+
+folder = Path(sys.argv[1])
+run_batch(small_plan(folder, methods=["tiling"]), folder / "out", place=Processes(2))
+"""
+
+
+def test_a_script_that_every_process_would_run_again_is_told_so_at_once(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED, "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", str(script), str(tmp_path)],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=False,
+        timeout=240,
+    )
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1] == f"texlab_core.errors.InputError: {UNBORN}"
+    # Each of the first processes fails once, and no other one is started.
+    assert done.stderr.count("Another batch is at work") <= 2
 
 
 @pytest.mark.parametrize("count", [0, 257, True, 1.5])

@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 MAX_PROCESSES = 256
 # An order whose process died gets so many more, each alone, before it is given up.
 CHANCES = 2
+UNBORN = (
+    "No process came so far as to begin its work; there may be too little memory for it, or the script that asks "
+    'for processes does its work outside of if __name__ == "__main__", which each of them runs again.'
+)
 DIED = "The process that ran it ended without a word {} times; there may be too little memory for it."
 
 
@@ -103,6 +107,7 @@ class _Crew:
         self._context = multiprocessing.get_context("spawn")
         try:
             self._stop: Event = self._context.Event()
+            self._begun: Event = self._context.Event()
         except OSError as error:
             # A bare system may lack what processes share.
             raise InputError(f"No processes can be started here ({error.strerror}); use only one.") from error
@@ -131,13 +136,13 @@ class _Crew:
                 try:
                     waiting[self._submit(order)] = order
                 except BrokenProcessPool:
-                    lost.append(order)
+                    self._lose(order, lost)
             for future in wait(waiting, POLL_S, FIRST_COMPLETED).done:
                 order = waiting.pop(future)
                 try:
                     outcome = future.result()
                 except BrokenProcessPool:
-                    lost.append(order)
+                    self._lose(order, lost)
                     continue
                 yield outcome
                 self._drop.leave(order.parcels)
@@ -148,9 +153,15 @@ class _Crew:
                 self._width,
                 mp_context=self._context,
                 initializer=_start,
-                initargs=(self._stop, str(self._drop.folder)),
+                initargs=(self._stop, self._begun, str(self._drop.folder)),
             )
         return self._pool.submit(_carry_out, order)
+
+    def _lose(self, order: Order, lost: list[Order]) -> None:
+        """Keep an order for another try; there is none where no process has ever begun."""
+        if not self._begun.is_set():
+            raise InputError(UNBORN)
+        lost.append(order)
 
     def _alone(self, order: Order, should_stop: ShouldStop | None) -> Outcome:
         """Run an order that was lost with nothing beside it, so that it is clear which one kills its process."""
@@ -225,8 +236,9 @@ def _sealed(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 _here: list[_Here] = []
 
 
-def _start(stop: Event, folder: str) -> None:
+def _start(stop: Event, begun: Event, folder: str) -> None:
     """Prepare a process: Ctrl-C is for the one that started it, and it ends when that one does."""
+    begun.set()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
