@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench soak bar tuned report kill calibrate wheel sdist docs lock bits icons program screenshot screens clean distclean
+.PHONY: run test lint fmt bench soak bar numbers tuned report kill calibrate wheel sdist docs lock bits icons program screenshot screens clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -35,6 +35,10 @@ soak: .venv/.ready-test
 # De Bonet's defaults against what they have to reach; writes the table of the help page.
 bar: .venv/.ready-run
 	@$(PY) -m texlab_core.figures.defaults --write resources/help/de-bonet.md
+
+# The numbers in the words and tables of the other help pages, measured anew.
+numbers: .venv/.ready-run
+	@$(PY) -m texlab_core.figures --numbers resources/help
 
 # Whether what the tuner finds has a larger V at no larger D than the defaults; takes most of an hour.
 tuned: .venv/.ready-run

@@ -231,6 +231,24 @@ def test_the_largest_page_is_the_picture():
     assert alone.size == (8, 8)
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"\0\0\0\x18ftypcrx \0\0\0\1",
+        b"FUJIFILMCCD-RAW 0201",
+        b"IIRO\x08\0\0\0",
+        b"IIU\0\x18\0\0\0",
+        b"FOVb",
+        b"\0MRM",
+    ],
+)
+def test_raw_photographs_that_are_no_tiff_are_named_too(head):
+    with pytest.raises(
+        ImageError, match="is a raw photograph, which TexLab does not develop; export it as TIFF or PNG"
+    ):
+        as_exemplar(head + bytes(60))
+
+
 def test_raw_photographs_get_one_sentence():
     data = pages((GRAY[..., 0], {"subfiletype": 1}), (deep(12)[..., 0], {"photometric": 32803}))
     with pytest.raises(ImageError, match=r"is a raw photograph \(DNG or another camera's\), which"):

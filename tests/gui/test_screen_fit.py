@@ -15,6 +15,7 @@ from texlab.window.main_window import MainWindow
 from texlab.window.screen_fit import first_window, panel_sizes, within
 
 if TYPE_CHECKING:
+    from texlab.app.explorer import Explorer
     from texlab.window.screen_fit import Rect
 
 SCREENS = [
@@ -70,3 +71,11 @@ def test_a_real_window_takes_the_screens_size(
     again = start.build(settings, ThemeSource("light"))
     qtbot.addWidget(again)
     assert QRect(0, 0, *screen).contains(again.geometry())
+
+
+def test_no_tab_makes_the_window_wider_than_a_small_screen(explorer: Explorer) -> None:
+    """1366 x 768 at 200 % leaves 681 pixels within the frame."""
+    needed = {name: dock.minimumSizeHint().width() for name, dock in explorer.window.docks.items()}
+    for name in needed.keys() - {"gallery", "parameters"}:
+        assert needed["gallery"] + needed[name] + needed["parameters"] < 681 - 10, (name, needed[name])
+    assert explorer.window.minimumSizeHint().width() <= 681

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import QPoint, QRect, Qt, QTimer
+from PySide6.QtCore import QPoint, QRect, QSize, Qt, QTimer
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -40,6 +40,9 @@ WORKING = "Working ..."
 STALE = "From before; the new one is being computed"
 # What comes sooner needs no such words.
 STALE_MS = 400
+# A window on a screen of 683 pixels (1366 at 200 %) has so much beside gallery and parameters.
+MOST_NEEDED = 360
+QWIDGETSIZE_MAX = 2**24 - 1
 
 
 def shown_image(column: ColumnScene | None) -> FloatImage | None:
@@ -88,6 +91,14 @@ class LookedAt:
         return self.image if self.stage is None else self.stage.values(self.stage_channels)
 
 
+class _Body(QWidget):
+    """What a tab shows; on a narrow screen it is squeezed, and the window fits all the same."""
+
+    def minimumSizeHint(self) -> QSize:
+        """Return what the parts need, but no more than a small screen has."""
+        return super().minimumSizeHint().boundedTo(QSize(MOST_NEEDED, QWIDGETSIZE_MAX))
+
+
 class FramedDock(Dock):
     """A dock with a line of controls above its body.
 
@@ -123,7 +134,7 @@ class FramedDock(Dock):
         tip = "A stage chosen under Steps is shown instead of the result: click to go back to the result"
         self.add_control(self.stage_button, "stage", "Back to the result", tip)
         self.stage_button.hide()
-        self.body = QWidget()
+        self.body = _Body()
         self.body.setObjectName(f"{self.name}-body")
         self._stale = Label(STALE, self.body)
         self._stale.setObjectName(f"{self.name}-stale")

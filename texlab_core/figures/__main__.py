@@ -1,4 +1,4 @@
-"""Draw the figures of the help pages into a folder."""
+"""Draw the figures of the help pages into a folder, or measure the numbers of the pages anew."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from texlab_core.errors import InputError
 from texlab_core.figures import encode, figures
+from texlab_core.figures._stated import renew
 from texlab_core.files.whole import write_whole
 
 
@@ -16,9 +17,13 @@ def main() -> int:
     """Draw what was asked for; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m texlab_core.figures", description=__doc__, allow_abbrev=False)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--numbers", action="store_true", help="FOLDER holds the pages: renew the numbers in them")
     parser.add_argument("names", nargs="*", metavar="NAME", help="default: all figures")
     args = parser.parse_args()
     try:
+        if args.numbers:
+            renew(args.folder)
+            return 0
         args.folder.mkdir(parents=True, exist_ok=True)
         for figure in figures(args.names):
             start = time.perf_counter()

@@ -137,6 +137,11 @@ def refuse_heic(file: BinaryIO, gate: Gate) -> Decoded:
     raise ImageError(f"{gate.name}: is a HEIC image, which TexLab does not read; save it as JPEG, PNG or AVIF.")
 
 
+def refuse_raw(file: BinaryIO, gate: Gate) -> Decoded:
+    """Say that raw photographs are not developed; for those that are no TIFF files."""
+    raise ImageError(f"{gate.name}: is a raw photograph, which TexLab does not develop; export it as TIFF or PNG.")
+
+
 def _frames(count: int) -> list[str]:
     return [f"The file has {count} frames; the first one was used."] if count > 1 else []
 

@@ -22,6 +22,8 @@ READABLE_SUFFIXES = (
 )
 _HEAD = 64
 _TAIL = 18
+# Canon, Fujifilm, Olympus, Panasonic, Sigma, Minolta: the others' raw files are TIFF files.
+_RAW = (b"FUJIFILMCCD-RAW", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"FOVb", b"\0MRM")
 _HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1")
 
 
@@ -86,6 +88,8 @@ def _coded(head: bytes) -> Reader | None:
         # Of the general brands, the list of compatible ones tells.
         if brand in (b"avif", b"avis") or (brand in (b"mif1", b"msf1") and b"avif" in head[16:]):
             return coded.read_avif
+        if brand == b"crx ":
+            return coded.refuse_raw
         return coded.refuse_heic if brand in _HEIC else None
     if head.startswith((b"\xff\x0a", b"\0\0\0\x0cJXL ")):
         return coded.read_jpegxl
@@ -97,7 +101,7 @@ def _coded(head: bytes) -> Reader | None:
         from texlab_core.images.formats.exr import read_exr
 
         return read_exr
-    return None
+    return coded.refuse_raw if head.startswith(_RAW) else None
 
 
 def _older(head: bytes, tail: bytes) -> Reader | None:

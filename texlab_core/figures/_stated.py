@@ -1,0 +1,211 @@
+"""The numbers that stand in the words and tables of the help pages, measured anew and put in their places.
+
+A place in a page is what lies between ``<!-- NAME -->`` and ``<!-- end of NAME -->``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from texlab_core.errors import InputError
+from texlab_core.files.regular import read_regular
+from texlab_core.files.whole import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+MAX_PAGE_BYTES = 2**20
+SAMPLED = (2, 4, 6, 8, 12)
+MATCHED = (1, 2, 4, 6, 8, 12)
+MATCHED_ON = {"zebra": "oriented-zebra", "gravel": "stochastic-gravel", "coral": "structured-coral"}
+SEEDS = (0, 1, 2)
+SLANTS = (10, 30, 50, 70)
+VIEWS = 14
+
+
+def copied_neighbours(orientations: Sequence[int] = SAMPLED) -> list[float]:
+    """Return which share of neighbours De Bonet's method copies with so many orientations.
+
+    Over the steerable pyramid, from 128 x 128 pixels of pebbles, 256 x 256, alpha 0.4, seed 0.
+    """
+    from texlab_core.figures._tools import make, texture
+    from texlab_core.measures.registry import measure_all
+    from texlab_core.measures.subject import Subject
+
+    pebbles = texture("structured-pebbles")
+    shares = []
+    for count in orientations:
+        result = make("de-bonet", pebbles, 256, 0, pyramid="steerable", bands=count, alpha=0.4)
+        shares.append(measure_all(Subject.of_result(result), ("copied-share",))["copied-share"])
+    return shares
+
+
+def spectral_distances(name: str, orientations: Sequence[int] = MATCHED) -> list[float]:
+    """Return how far the spectra of Heeger-Bergen's results are from the exemplar's, in dB, mean of three seeds.
+
+    From 128 x 128 pixels of a texture of the gallery, 256 x 256.
+    """
+    from texlab_core.figures._tools import make, texture
+    from texlab_core.measures.registry import measure_all
+    from texlab_core.measures.subject import Subject
+
+    exemplar = texture(name)
+    means = []
+    for count in orientations:
+        found = [
+            measure_all(
+                Subject.of_result(make("heeger-bergen", exemplar, 256, seed, orientations=count)),
+                ("spectral-distance",),
+            )["spectral-distance"]
+            for seed in SEEDS
+        ]
+        means.append(sum(found) / len(found))
+    return means
+
+
+def searched() -> tuple[tuple[float, float], ...]:
+    """Return keys looked at and structures compared per place of level 1, for the three ways of searching."""
+    from texlab_core.figures._tools import make, texture
+    from texlab_core.methods.de_bonet.search import survey
+
+    sampling = make("de-bonet", texture("stochastic-lava"), 128, 0, alpha=0.15, beta=0.0).details.sampling
+    counted = survey(sampling, 1, 4)
+    ways = (counted.blank, counted.keys, counted.hierarchy)
+    return tuple((way.keys / counted.locations, way.verified / counted.locations) for way in ways)
+
+
+def shared_information() -> tuple[float, ...]:
+    """Return bits of coral; bits and dependence of Heeger-Bergen's result, then of De Bonet's."""
+    from texlab_core.figures._tools import make, texture
+    from texlab_core.measures.dependence import PAIR
+    from texlab_core.stats.dependence import difference, mutual_information, rank_histograms
+
+    def information(ranks: NDArray[np.float64]) -> float:
+        return sum(map(mutual_information, ranks)) / len(ranks)
+
+    coral = texture("structured-coral", 256)
+    own = rank_histograms(coral.pixels, PAIR)
+    numbers = [information(own)]
+    for method in ("heeger-bergen", "de-bonet"):
+        other = rank_histograms(make(method, coral, 256, 0).image, PAIR)
+        numbers += [information(other), difference(own, other)]
+    return tuple(numbers)
+
+
+def normal_errors(kind: str, slants: Sequence[int] = SLANTS) -> tuple[list[float], list[float]]:
+    """Return mean errors of the normal in degrees, by search and by moments, on noise or discs."""
+    import numpy as np
+
+    from texlab_core.shape.isotropy import isotropy_spectrum
+    from texlab_core.shape.orientation import Orientation
+    from texlab_core.shape.rendering import slanted_plane
+    from texlab_core.shape.textures import disc_texture, noise_texture
+
+    rng = np.random.default_rng(20)
+    textures = [noise_texture(800, rng) if kind == "noise" else disc_texture(800, rng) for _ in range(2)]
+    by_search, by_moments = [], []
+    for slant in slants:
+        errors = []
+        for view in range(VIEWS):
+            truth = Orientation(slant, float(rng.uniform(0, 180)))
+            seen = np.roll(textures[view % 2], tuple(rng.integers(0, 800, 2)), axis=(0, 1))
+            spectrum = isotropy_spectrum(slanted_plane(seen, truth, (256, 256)))
+            errors.append((spectrum.by_search().error(truth), spectrum.by_moments().error(truth)))
+        search, moments = np.mean(errors, axis=0)
+        by_search.append(float(search))
+        by_moments.append(float(moments))
+    return by_search, by_moments
+
+
+def _rows(head: Sequence[object], *rows: Sequence[object]) -> str:
+    lines = [f"| {' | '.join(map(str, line))} |".replace("|  |", "| |") for line in (head, *rows)]
+    return "\n".join([lines[0], "|---" * len(head) + "|", *lines[1:]])
+
+
+def _copied() -> str:
+    shares = [f"{share:.2f}".removeprefix("0") for share in copied_neighbours()]
+    return _rows(["orientations", *SAMPLED], ["copied neighbours", *shares])
+
+
+def _matched() -> str:
+    rows = [[title, *(f"{each:.1f}" for each in spectral_distances(name))] for title, name in MATCHED_ON.items()]
+    return _rows(["K", *MATCHED], *rows)
+
+
+def _searched() -> str:
+    names = ("blank search", "hash keys", "hierarchy")
+    rows = [
+        (name, f"{keys:.0f}", f"{compared:.0f}") for name, (keys, compared) in zip(names, searched(), strict=True)
+    ]
+    return _rows(["", "keys looked at", "structures compared"], *rows)
+
+
+def _shared() -> str:
+    own, *others = (f"{each:.3f}" for each in shared_information())
+    return (
+        f"For coral at 256 x 256 (seed 0): the exemplar's fine coefficients have {own} bits from their\n"
+        f"parents, Heeger-Bergen leaves {others[0]} (dependence {others[1]}), De Bonet {others[2]} "
+        f"(dependence {others[3]})."
+    )
+
+
+def _normals() -> str:
+    rows = []
+    for kind in ("noise", "discs"):
+        for how, errors in zip(("search", "moments"), normal_errors(kind), strict=True):
+            rows.append([f"{kind}, {how}", *(f"{each:.0f}" for each in errors)])
+    return _rows(["true slant", *SLANTS], *rows)
+
+
+@dataclass(frozen=True)
+class Stated:
+    """Words with numbers in a page.
+
+    Parameters
+    ----------
+    page
+        The page's name.
+    name
+        That of the place in it.
+    words
+        Measures and writes them.
+    """
+
+    page: str
+    name: str
+    words: Callable[[], str]
+
+
+STATED = (
+    Stated("de-bonet", "orientations", _copied),
+    Stated("laboratory", "search keys", _searched),
+    Stated("laboratory", "orientations", _matched),
+    Stated("laboratory", "dependence", _shared),
+    Stated("shape-from-texture", "normals", _normals),
+)
+
+
+def place(name: str) -> re.Pattern[str]:
+    """Return what finds the words at a place of a page's text."""
+    return re.compile(
+        rf"(?<=<!-- {re.escape(name)} -->\n\n).*?(?=\n\n<!-- end of {re.escape(name)} -->)", re.DOTALL
+    )
+
+
+def renew(folder: Path) -> None:
+    """Measure every number anew and put it into the pages of a folder; raises ``InputError`` and ``OSError``."""
+    for each in STATED:
+        path = folder / f"{each.page}.md"
+        text = read_regular(path, MAX_PAGE_BYTES).decode("utf-8")
+        if place(each.name).search(text) is None:
+            raise InputError(f"{path}: has no place called {each.name!r}.")
+        # As a pattern's replacement a backslash would mean something.
+        words = each.words().replace("\\", "\\\\")
+        write_whole(path, place(each.name).sub(words, text).encode())
+        print(f"{path.name}, {each.name}", flush=True)
