@@ -319,3 +319,14 @@ def test_the_analysis_begins_in_pieces_of_one_channel():
     assert pieces[:3] == [300_000] * 3
     # Then the axes: blocks of at most 2^19 values, or one product of two channels.
     assert max(pieces[4:]) <= 2**19
+
+
+def test_no_curve_is_called_like_a_measure() -> None:
+    """A curve is about the method's own bands on the way, a measure about the result: two numbers, two names."""
+    from texlab_core.api import synthesize
+    from texlab_core.measures.registry import measures
+
+    exemplar = np.random.default_rng(1).random((32, 32, 1)).astype(np.float32)
+    for method in ("heeger-bergen", "msg", "efros-leung", "de-bonet"):
+        curves = synthesize(exemplar, method, size=(32, 32), seed=0).curves
+        assert not {each.title for each in curves.values()} & {each.title for each in measures().values()}

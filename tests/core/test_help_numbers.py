@@ -84,6 +84,23 @@ def test_normal_errors(kind: str) -> None:
         assert found == pytest.approx(written[:1], abs=1.0)
 
 
+def test_solids() -> None:
+    from texlab_core.figures._tools import title_of
+    from texlab_core.images.gallery import gallery
+
+    words = " ".join(stated("solid", "solids").split())
+    count, nearer, close, others = map(int, re.findall(r"(?<= )\d+(?= )", words)[:4])
+    named = words.partition("(")[2].partition(")")[0].split(", ")
+    assert count == len(gallery()) == nearer + close + others
+    assert len(named) == close
+    granite = _stated.solid_bands("stochastic-granite", "mixed")
+    assert not all(last < first for first, last in granite)
+    assert all(last < max(first, _stated.CLOSE) for first, last in granite)
+    assert title_of("stochastic-granite") in named
+    ribs = _stated.solid_bands("manmade-ribs", "laplacian")
+    assert sum(last >= first for first, last in ribs) == 1
+
+
 def test_two_hits_of_five_stand_out_where_guessing_finds_eleven_of_a_hundred() -> None:
     assert "guessing finds in 11 %, two hits of five stand out, and one does\nnot" in page("popout")
     assert wilson(2, 5)[0] > 0.11 > wilson(1, 5)[0]
