@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from de_bonet_scenes import exemplar, finished, scene
-from dock_scenes import check_controls, feed, shown
+from dock_scenes import check_controls, feed, image_input, shown
 from PySide6.QtCore import QPoint, Qt
 
 from tests.gui.conftest import hb, ids, wait_idle
@@ -22,9 +22,13 @@ from texlab.docks.explain.de_bonet import (
     summary,
 )
 from texlab.docks.explain.dock import INVITATION, ExplainDock
+from texlab.docks.explain.unexplained import EXPLAINED
 from texlab.state.intentions import Pin, ShowMarks
 from texlab.state.scene import Probe
 from texlab.style.theme import DARK, LIGHT
+from texlab_core.engine.job import Job
+from texlab_core.engine.registry import find_method
+from texlab_core.engine.run import run
 from texlab_core.methods.de_bonet.explain import explain
 from texlab_core.methods.de_bonet.method import DeBonetParams
 
@@ -252,10 +256,31 @@ def test_many_candidates_are_thinned_but_the_chosen_one_stays():
 
 def test_a_method_that_cannot_explain_says_so(looker):
     other = dataclasses.replace(looker.column.result, details=None)
-    looker.column = dataclasses.replace(looker.column, result=other, title="MSG")
+    looker.column = dataclasses.replace(looker.column, result=other, method="msg", title="MSG")
     assert looker.look(3, 4) is None
     assert looker.dock.message.startswith("MSG cannot tell why a single pixel is there")
     assert explainer_for(None) is None
+
+
+def test_a_method_that_explains_says_when_nothing_was_kept(looker):
+    other = dataclasses.replace(looker.column.result, details=None)
+    looker.column = dataclasses.replace(looker.column, result=other, method="efros-leung", title="Efros-Leung")
+    assert looker.look(3, 4) is None
+    assert "was not kept; run the column again" in looker.dock.message
+    params = find_method("efros-leung").params(reach=32)
+    mask = ("mask", image_input(np.zeros((4, 4, 1))))
+    looker.column = dataclasses.replace(looker.column, params=params, inputs=(mask,))
+    assert looker.look(4, 4) is None
+    assert "filled this picture part by part" in looker.dock.message
+
+
+@pytest.mark.parametrize(
+    "name", ["bands", "de-bonet", "efros-leung", "heeger-bergen", "msg", "uncoded", "car", "ac-h"]
+)
+def test_what_explains_is_known_by_name(name):
+    pixels = np.random.default_rng(1).random((32, 32, 1), np.float32)
+    result = run(Job(method=name, inputs={"exemplar": image_input(pixels)}, size=(16, 16)))
+    assert (explainer_for(result.details) is not None) == (name in EXPLAINED)
 
 
 def test_while_a_column_runs_its_last_explanation_stays(looker):

@@ -10,9 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from dock_scenes import column_of, noise
-from PySide6.QtCore import QPoint, QRectF, Qt
+from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractSpinBox,
     QApplication,
+    QComboBox,
+    QLineEdit,
+    QSlider,
     QTabBar,
     QTableWidget,
     QTableWidgetItem,
@@ -179,7 +184,33 @@ def test_messages_lie_over_the_stage_and_move_nothing(qtbot: Any, explorer: Expl
     assert bar.height() >= bar.label.heightForWidth(bar.label.width())
     window.resize(1100, 760)
     qtbot.waitUntil(lambda: bar.width() < bar.parentWidget().width())
+    # It lies over no control: neither over those of the columns, nor over a panel's while that has the stage.
+    lies_over_no_control(window)
+    window.raise_dock("fill")
+    window.big_panel.toggle("fill")
+    for sentence in ("Short.", "Something that is worth to be known. " * 30):
+        window.message_bar.tell(sentence.strip(), "problem")
+        QApplication.processEvents()
+        lies_over_no_control(window)
+        tip = re.sub(r"<[^>]*>|\s+", " ", bar.label.toolTip())
+        assert bar.label.text() == sentence.strip() or sentence.strip() in tip
+    window.big_panel.give_back()
+    QApplication.processEvents()
+    lies_over_no_control(window)
     bar.hide()
+    wait_idle(qtbot, explorer)
+
+
+def lies_over_no_control(window: Any) -> None:
+    bar = window.message_bar
+    assert bar.isVisible()
+    lies = QRect(bar.mapToGlobal(QPoint()), bar.size())
+    assert lies.height() > bar.label.fontMetrics().height()
+    for widget in window.findChildren(QWidget):
+        is_control = isinstance(widget, QAbstractButton | QComboBox | QAbstractSpinBox | QSlider | QLineEdit)
+        if is_control and widget.isVisible() and not bar.isAncestorOf(widget):
+            covered = lies.intersected(QRect(widget.mapToGlobal(QPoint()), widget.size()))
+            assert covered.isEmpty() or widget.visibleRegion().isEmpty(), widget.objectName()
 
 
 def test_the_exemplar_is_zoomed_by_its_own_size_until_it_is_linked(qtbot: Any, explorer: Explorer) -> None:

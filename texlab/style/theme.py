@@ -157,7 +157,7 @@ def stylesheet(theme: Theme, points: float) -> str:
     # Qt paints the titles of docks small when their font is that of the application.
     return f"""
     QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border}; padding: 4px; }}
-    QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 4px 6px; }}
+    QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 3px; padding: 4px 6px; }}
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
     QMainWindow > QTabBar::tab {{ padding: 4px 8px; border: none; border-top: 2px solid transparent; }}

@@ -29,6 +29,7 @@ from texlab.window.gallery import GalleryView
 from texlab.window.layouts import SIDES, Layouts
 from texlab.window.lesson_bar import LessonBar
 from texlab.window.message_bar import MessageBar
+from texlab.window.message_room import room_for_messages
 from texlab.window.panel_strip import PanelStrip
 from texlab.window.screen_fit import first_window, panel_sizes, within
 from texlab.window.stops import FocusRing, next_stop
@@ -147,6 +148,7 @@ class MainWindow(QMainWindow):
         self._loading.deleteLater()
         self._middle_layout.setStretchFactor(workspace, 1)
         self.big_panel.set_stage(workspace)
+        self.message_bar.keep_to(partial(room_for_messages, self._middle, workspace, self.big_panel, self._front))
         self.message_bar.raise_()
 
     def add_docks(self, hosts: Mapping[str, DockHost]) -> None:
@@ -260,6 +262,7 @@ class MainWindow(QMainWindow):
         if isinstance(application, QApplication):
             apply_theme(application, theme)
         self.message_bar.set_theme(theme)
+        self.toolbar.set_theme(theme)
 
     def show_session(self, session: Session) -> None:
         """Show seed, size and what undo and redo would do."""
@@ -328,6 +331,10 @@ class MainWindow(QMainWindow):
             if name not in SIDES and dock.isVisible() and not dock.visibleRegion().isEmpty():
                 return name
         return ""
+
+    def _front(self) -> QWidget | None:
+        dock = self.docks.get(self.front_dock())
+        return None if dock is None else dock.widget()
 
     def raise_dock(self, name: str) -> None:
         """Bring a dock to the front and give it the keyboard."""

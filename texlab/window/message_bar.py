@@ -1,15 +1,17 @@
-"""A line at the top of the window for errors and news; it never interrupts."""
+"""A line over the pictures for errors and news; it never interrupts, and lies over no control."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QRect, Qt, QTimer
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QToolButton, QWidget
 
-from texlab.widgets.plain import Label
+from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from texlab.style.theme import Theme
 
 NEWS_MS = 6000
@@ -45,6 +47,8 @@ class MessageBar(QFrame):
         self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
         self._ground = "#e9e9e6"
         self.hide()
+        self._room: Callable[[], QRect] | None = None
+        self._sentence = ""
         self._below = parent
         if parent is not None:
             parent.installEventFilter(self)
@@ -59,7 +63,7 @@ class MessageBar(QFrame):
         """Show a sentence."""
         self._kind = kind
         self._paint()
-        self.label.setText(sentence)
+        self._sentence = sentence
         self._lie()
         self.show()
         self.raise_()
@@ -73,6 +77,11 @@ class MessageBar(QFrame):
         self.setStyleSheet(
             f"MessageBar {{ border: 1px solid {colour}; border-left-width: 6px; background: {self._ground}; }}"
         )
+
+    def keep_to(self, room: Callable[[], QRect]) -> None:
+        """Lie in this part of what is below from now on: there is no control. Nothing ends lower than it does."""
+        self._room = room
+        self._lie()
 
     def lie_over(self, below: QWidget, within: QWidget) -> None:
         """Lie over the upper edge of another widget from now on, ``within`` one that is around it."""
@@ -88,12 +97,27 @@ class MessageBar(QFrame):
     def _lie(self) -> None:
         """Lie over the upper edge of what is below: nothing there has to move."""
         below, within = self._below, self.parentWidget()
-        if below is not None and within is not None:
-            corner = below.mapTo(within, QPoint(MARGIN, MARGIN)) if below is not within else QPoint(MARGIN, MARGIN)
-            width = below.width() - 2 * MARGIN
-            layout = self.layout()
-            height = layout.heightForWidth(width) if layout is not None and layout.hasHeightForWidth() else -1
-            self.setGeometry(corner.x(), corner.y(), width, max(height, self.sizeHint().height()))
+        if below is None or within is None:
+            return
+        room = below.rect() if self._room is None else self._room()
+        corner = below.mapTo(within, room.topLeft()) if below is not within else room.topLeft()
+        width = room.width() - 2 * MARGIN
+        self._write(width, room.height() - 2 * MARGIN)
+        self.setGeometry(corner.x() + MARGIN, corner.y() + MARGIN, width, self._height(width))
+
+    def _height(self, width: int) -> int:
+        layout = self.layout()
+        height = layout.heightForWidth(width) if layout is not None and layout.hasHeightForWidth() else -1
+        return max(height, self.minimumSizeHint().height())
+
+    def _write(self, width: int, most: int) -> None:
+        """Write as many words of the sentence as there is room for; all of it is in the tip."""
+        words = self._sentence.split(" ")
+        self.label.setText(self._sentence)
+        while len(words) > 1 and self._height(width) > most:
+            words.pop()
+            self.label.setText(" ".join(words) + " …")
+        set_tip(self.label, self._sentence if self.label.text() != self._sentence else "")
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Follow the size of what is below."""

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QStackedLayout
 
 from texlab.docks.base import Question
 from texlab.docks.explain import explainer_for
+from texlab.docks.explain.unexplained import without_words
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.state.intentions import Pin, ShowMarks
@@ -82,7 +83,7 @@ class ExplainDock(FramedDock):
             return None
         explainer = explainer_for(result.details)
         if explainer is None:
-            self.why = f"{column.title} cannot tell why a single pixel is there: it makes the picture as a whole."
+            self.why = without_words(column)
             return None
         height, width = result.image.shape[:2]
         row, place = min(probe.row, height - 1), min(probe.column, width - 1)

@@ -1,0 +1,59 @@
+"""Icons of the tools: drawn once as SVG, painted in the colours of the theme, sharp at any scale of the screen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QByteArray, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
+
+from texlab_core.files.resources import resource
+
+if TYPE_CHECKING:
+    from texlab.style.theme import Theme
+
+# Pixels of the screen per logical pixel for which there are pictures; those between are made smaller.
+RATIOS = (1, 2, 3)
+# Share of its colour that a tool has while it cannot be used.
+PALE = 0.35
+_ROLES = {"run-all": "good", "stop-all": "error"}
+
+
+def tool_icon(name: str, theme: Theme, side: int) -> QIcon:
+    """Return the icon of a tool.
+
+    Parameters
+    ----------
+    name
+        A file of the resources ``icons/tools`` without its suffix.
+    theme
+        Gives the colour.
+    side
+        Width and height in logical pixels.
+
+    Raises
+    ------
+    OSError
+        When there is no such file.
+    """
+    drawing = resource(f"icons/tools/{name}.svg").read_text(encoding="utf-8")
+    colour = QColor(getattr(theme, _ROLES.get(name, "text")))
+    icon = QIcon()
+    for mode, share in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, PALE)):
+        for ratio in RATIOS:
+            icon.addPixmap(_painted(drawing, colour, side, ratio, share), mode)
+    return icon
+
+
+def _painted(drawing: str, colour: QColor, side: int, ratio: int, share: float) -> QPixmap:
+    from PySide6.QtSvg import QSvgRenderer
+
+    renderer = QSvgRenderer(QByteArray(drawing.replace("currentColor", colour.name()).encode()))
+    pixmap = QPixmap(QSize(side, side) * ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(pixmap)
+    painter.setOpacity(share)
+    renderer.render(painter, QRectF(pixmap.rect()))
+    painter.end()
+    pixmap.setDevicePixelRatio(ratio)
+    return pixmap
