@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +76,19 @@ def test_what_cannot_be_gets_one_sentence(texlab: Texlab) -> None:
         assert shown.code == 2
         assert words in shown.err
         assert shown.err.count("\n") == 1
+
+
+def test_what_the_machine_cannot_hold_is_refused_before_the_start(
+    texlab: Texlab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("texlab_core.engine.estimate.machine_bytes", lambda: 1000)
+    shown = texlab(*MAKE, "--out", "a.tif")
+    assert (shown.code, shown.out) == (2, "")
+    assert re.fullmatch(
+        r".*Solid texture of 12 x 10 x 8 needs about 0\.0 GB of memory, and this machine has 0\.0 GB; .*\n",
+        shown.err,
+    )
+    assert not Path("a.tif").exists()
 
 
 def test_any_input_is_given_by_its_name(texlab: Texlab) -> None:

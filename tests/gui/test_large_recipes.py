@@ -102,3 +102,8 @@ def test_a_solid_that_takes_long_waits_until_it_is_asked_for(
     # One step back there is a finished one, which takes nothing.
     session.undo()
     qtbot.waitUntil(lambda: status() == "finished")
+    # What the machine cannot hold does not wait: it is refused.
+    monkeypatch.setattr(estimate, "machine_bytes", lambda: 1000)
+    session.set_column_size(column_id, (16, 8, 8))
+    qtbot.waitUntil(lambda: status() == "failed")
+    assert "of memory, and this machine has" in controller.column_scene(column_id).message

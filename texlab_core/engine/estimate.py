@@ -59,7 +59,8 @@ def is_large(estimate: Estimate, size: Sequence[int]) -> bool:
 
 def in_words(estimate: Estimate) -> str:
     """Return what a run takes, as part of a sentence: "about 6.9 GB of memory and 40 s"."""
-    memory = f"{estimate.nbytes / 1e9:.1f} GB" if estimate.nbytes >= 1e8 else f"{estimate.nbytes / 1e6:.0f} MB"
+    megabytes = max(1, round(estimate.nbytes / 1e6))
+    memory = f"{estimate.nbytes / 1e9:.1f} GB" if megabytes >= 100 else f"{megabytes} MB"
     seconds = estimate.seconds
     if seconds is None:
         return f"about {memory} of memory"
