@@ -64,6 +64,21 @@ def test_labelled_results_come_in_the_right_order() -> None:
     assert seen[method == "de-bonet"].max() < seen[method == "heeger-bergen"].min()
 
 
+def test_what_the_observer_was_unsure_of_is_told_apart(tmp_path: Path) -> None:
+    notes = ("", "borderline 2/1", "halo; borderline 1/2", "borderline 3/2", "borderline 0/1", "border cut")
+    rows = ["texture\tmethod\tparameters\tscore\treasons\tnote"]
+    rows += [f"{'ab'[place > 3]}\tmsg\t\t{1 + place % 2}\t\t{note}" for place, note in enumerate(notes)]
+    (tmp_path / "results.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    labels = calibrate.read_labels(tmp_path)
+    assert [each.borderline for each in labels] == [False, True, True, False, False, False]
+    good = np.array([each.score >= calibrate.GOOD for each in labels])
+    # Wrong in the two unsure ones only.
+    values = np.array([3.0, 4.0, 0.0, 1.0, 3.5, 1.5])
+    said = calibrate._without_borderline(labels, values, good)
+    assert said.startswith("| D without 2 results that are borderline | 1.000 | 1.000 |")
+    assert calibrate.auc(-values, good) < 1
+
+
 def test_d_with_its_own_constant_is_the_measures_but_for_the_scale() -> None:
     labels = calibrate.read_labels(LABELS)[:4]
     ids = ("discriminability", "magnitude-difference", "block-distance")

@@ -1,13 +1,14 @@
 """How well the measures tell what an observer sees: ``python -m texlab_core.measures.calibrate LABELS``.
 
-``LABELS`` holds ``results.tsv`` (texture, method, parameters, score, reasons), ``exemplars.tsv`` (texture, kinds),
-``gallery/TEXTURE.VARIANT.webp`` and ``gallery/TEXTURE.exemplar.webp``. Nothing is fitted to a texture that is
-judged: cuts are chosen on all other textures (leave one texture out).
+``LABELS`` holds ``results.tsv`` (texture, method, parameters, score, reasons, note), ``exemplars.tsv`` (texture,
+kinds), ``gallery/TEXTURE.VARIANT.webp`` and ``gallery/TEXTURE.exemplar.webp``. Nothing is fitted to a texture that
+is judged: cuts are chosen on all other textures (leave one texture out).
 """
 
 from __future__ import annotations
 
 import csv
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from texlab_core.engine.inputs import ImageInput
 
 GOOD = 2
+# In the note on a result that the observer could as well have called good, or not.
+BORDERLINE = re.compile(r"borderline (2/1|1/2)\b")
 # What is judged by the score, and what by a reason within the methods that show it.
 BY_SCORE = (
     "discriminability",
@@ -78,17 +81,19 @@ class Labelled:
     variant: str
     score: int
     reasons: frozenset[str]
+    borderline: bool = False
 
 
 def read_labels(folder: Path) -> list[Labelled]:
     """Return the labels; raises ``InputError`` when the table is missing or not as described."""
     found = []
-    for row in _rows(folder / "results.tsv", ("texture", "method", "parameters", "score", "reasons")):
+    for row in _rows(folder / "results.tsv", ("texture", "method", "parameters", "score", "reasons", "note")):
         name, _, value = row["parameters"].partition("=")
         short = {"alpha": value.partition(".")[2], "tau": f"tau{value}", "window": f"w{value}"}.get(name, "")
         variant = f"{row['method']}-{short}" if short else row["method"]
         reasons = frozenset(filter(None, row["reasons"].split(",")))
-        found.append(Labelled(row["texture"], row["method"], variant, int(row["score"]), reasons))
+        borderline = BORDERLINE.search(row["note"]) is not None
+        found.append(Labelled(row["texture"], row["method"], variant, int(row["score"]), reasons, borderline))
     return found
 
 
@@ -207,6 +212,8 @@ def table(folder: Path, tell: Callable[[int], None] = lambda _: None) -> str:
         numbers = auc(-values[name], good), within_textures(values[name], good, textures)
         right = accuracy_left_out(values[name], good, textures)
         lines.append(f"| {_title(name)} | {numbers[0]:.3f} | {numbers[1]:.3f} | {right:.0%} |")
+        if name == "discriminability":
+            lines.append(_without_borderline(labels, values[name], good))
     lines += [
         "",
         "| D with this on the diagonal | AUC | within one texture | one cut, right |",
@@ -225,6 +232,16 @@ def table(folder: Path, tell: Callable[[int], None] = lambda _: None) -> str:
         of = "all" if chosen == _ALL else ", ".join(chosen)
         lines.append(f"| {_title(name)} | {reason.replace('-', ' ')} | {of} | {told:.2f} |")
     return "\n".join([*lines, "", *_exemplars(folder, textures)]) + "\n"
+
+
+def _without_borderline(labels: Sequence[Labelled], values: NDArray[np.float64], good: NDArray[np.bool_]) -> str:
+    """Return the row of a measure over the labels of which the observer was sure."""
+    sure = np.array([not each.borderline for each in labels])
+    textures = [each.texture for each in labels if not each.borderline]
+    numbers = auc(-values[sure], good[sure]), within_textures(values[sure], good[sure], textures)
+    right = accuracy_left_out(values[sure], good[sure], textures)
+    count = len(labels) - len(textures)
+    return f"| D without {count} results that are borderline | {numbers[0]:.3f} | {numbers[1]:.3f} | {right:.0%} |"
 
 
 def _exemplars(folder: Path, textures: Sequence[str]) -> list[str]:
