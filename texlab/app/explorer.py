@@ -23,11 +23,12 @@ from texlab.state.changes import as_a_whole, at_full_size
 from texlab.state.intentions import OpenLesson
 from texlab.state.session import Column, Session, State
 from texlab.storage.autosave import Autosave
-from texlab.storage.paths import config_dir
+from texlab.storage.paths import config_dir, results_dir
 from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.sessions import claim, told_of_others
 from texlab.storage.settings import OLD_SESSION, columns_from_json, has_kept_inputs, seed_and_size
+from texlab.storage.stored_results import StoredResults
 from texlab.widgets.settling import settle_all
 from texlab.window.carrier import Carrier
 from texlab.window.exchange import Exchange
@@ -76,6 +77,7 @@ class Explorer(QObject):
         self.themes = themes
         self.session = Session(self)
         self.controller = Controller(self.session, self)
+        self.controller.shared.kept.disk = StoredResults(results_dir()) if settings.kept else None
         self.opener = Opener(
             self.session,
             self.controller,

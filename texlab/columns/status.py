@@ -58,6 +58,8 @@ def status_parts(scene: ColumnScene) -> list[str]:
         if any(name == "code" for name, _ in scene.inputs):
             parts.append("from a code, not the exemplar")
         parts += [size_text(made), duration(scene.elapsed_s)]
+        if scene.stored:
+            parts.append("kept from before")
     if scene.status == "finished":
         parts += signs(scene.findings or ())
     return parts

@@ -86,6 +86,8 @@ class Finished:
     frames: tuple[Frame, ...]
     draft: bool
     metrics: Mapping[str, float] = field(default_factory=dict)
+    stored: bool = False
+    """Whether it comes from the disk: without the model and the details that explain it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +111,22 @@ class Loading:
             task.progress(Waits("loading"))
             self.warmth.wait(self.need, task.should_stop)
             task.progress(Waits())
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A request for a worker: what the disk holds of a job, before anything else is waited for."""
+
+    make_job: Callable[[], Job]
+    read: Callable[[Job], Finished | None]
+    otherwise: Loading
+
+    def __call__(self, task: TaskLike) -> Finished | None:
+        """Return the result; None, once everything is loaded, when it has to be made."""
+        found = self.read(self.make_job())
+        if found is None:
+            self.otherwise(task)
+        return found
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from texlab.runs.column_run import (
     Measured,
     MeasureRun,
     Progress,
+    Stored,
     Waits,
     job_of,
     key_of,
@@ -155,10 +156,12 @@ class ColumnRunner(QObject):
         draft: bool = False,
         go_on: bool = False,
         alone: bool = False,
+        asked: bool = False,
     ) -> None:
         """Run the column's job of this state: as a draft, or going on from where it came to an end.
 
-        What is asked of this column ``alone`` goes before what all of them have to do.
+        What is asked of this column ``alone`` goes before what all of them have to do. When the user has ``asked``
+        for a run, a result from the disk is made again: what explains it is not there.
         """
         method = find_method(column.method)
         full = state.size_of(column)
@@ -187,7 +190,7 @@ class ColumnRunner(QObject):
             kept=self._kept if go_on else None,
         )
         kept = None if draft or go_on else self._shared.kept.get(key_of(column, state, exemplar))
-        if kept is not None:
+        if kept is not None and not (asked and kept.stored):
             # The same job has the same bits: what was finished is shown, before anything else takes a place.
             self._run = None
             self.worker.submit(lambda task: kept, rank=Rank.DRAFT)
@@ -198,7 +201,9 @@ class ColumnRunner(QObject):
             self.worker.submit(DraftRun(make_job), patient=patient, first=loading, rank=rank)
         else:
             self._run = ColumnRun(make_job, self._shared.cache, draft=draft)
-            self.worker.submit(self._run, patient=patient, first=loading, rank=rank)
+            look = not (draft or go_on or asked)
+            first = Stored(make_job, self._shared.kept.read, loading) if look else loading
+            self.worker.submit(self._run, patient=patient, first=first, rank=rank)
 
     def _announce(self, column: Column, *, small: bool) -> None:
         changes: dict[str, Any] = {
@@ -393,6 +398,7 @@ class ColumnRunner(QObject):
             "draft": end.draft and drawn < math.prod(self._full),
             "elapsed_s": end.result.elapsed_s,
             "result": end.result,
+            "stored": end.stored,
             "metrics": end.metrics,
             "findings": None,
             "unexamined": "",

@@ -82,6 +82,8 @@ class Controller(QObject):
         self._errands.changed.connect(lambda: self.errands_changed.emit(self._errands.names))
         self._warming = Worker("warming", parent=self)
         self._warming.submit(lambda task: self.warmth.serve())
+        # Made when there is something to write.
+        self._writer: Worker | None = None
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
@@ -297,7 +299,7 @@ class Controller(QObject):
     def run_column(self, column_id: int) -> None:
         """Run a column at full size, however large."""
         self._allow(column_id)
-        self._start(column_id, alone=True)
+        self._start(column_id, alone=True, asked=True)
 
     def go_on(self, column_id: int) -> None:
         """Go on from where a column was stopped or had finished, also at a larger size."""
@@ -310,7 +312,7 @@ class Controller(QObject):
         """Run every column, however large."""
         for column in self.session.state.columns:
             self._allow(column.id)
-            self._start(column.id)
+            self._start(column.id, asked=True)
 
     def stop_column(self, column_id: int) -> None:
         """Stop a column; the others go on."""
@@ -375,6 +377,9 @@ class Controller(QObject):
                 each.close()
         self._runners.clear()
         self._leaving.clear()
+        self._write_results()
+        if self._writer is not None:
+            self._writer.finish()
 
     def _threads(
         self,
@@ -437,7 +442,15 @@ class Controller(QObject):
         for runner in self._runners.values():
             runner.fail(sentence)
 
-    def _start(self, column_id: int, *, draft: bool = False, go_on: bool = False, alone: bool = False) -> None:
+    def _start(
+        self,
+        column_id: int,
+        *,
+        draft: bool = False,
+        go_on: bool = False,
+        alone: bool = False,
+        asked: bool = False,
+    ) -> None:
         runner = self._runners.get(column_id)
         column = self.session.state.column(column_id)
         exemplar = self.exemplar
@@ -448,7 +461,7 @@ class Controller(QObject):
         if large and not runner.has_finished(column, self.session.state, exemplar):
             runner.hold(column, size, large)
             return
-        runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone)
+        runner.start(column, self.session.state, exemplar, draft=draft, go_on=go_on, alone=alone, asked=asked)
 
     def _allow(self, column_id: int) -> None:
         """Let a column start however large: the user has asked for it."""
@@ -475,7 +488,17 @@ class Controller(QObject):
         if not self.busy:
             self.all_idle.emit()
 
+    def _write_results(self) -> None:
+        """Take to the disk what has been finished and measured."""
+        kept = self._shared.kept
+        if not kept.unwritten:
+            return
+        if self._writer is None:
+            self._writer = Worker("results", parent=self)
+        self._writer.submit(lambda task: kept.write(), patient=True)
+
     def _announce(self) -> None:
+        self._write_results()
         self.scene_changed.emit(self.scene())
         if not self.busy:
             self.all_idle.emit()

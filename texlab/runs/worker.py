@@ -149,6 +149,7 @@ class Worker(QObject):
         """Run ``request`` instead of whatever waits or runs; returns its generation number.
 
         ``first`` waits for what the request needs: it is called before a place is taken and ``started`` is told.
+        What it returns, unless that is None, is the answer, and the request is not made.
         A patient request lets the running one finish: what is asked for faster than it can be answered would
         otherwise never be seen.
         """
@@ -234,11 +235,11 @@ class Worker(QObject):
             else contextlib.nullcontext()
         )
         try:
-            if asked.first is not None:
-                asked.first(task)
-            with place:
-                self._tell(_Event(task.generation, "started"))
-                value = asked.request(task)
+            value = None if asked.first is None else asked.first(task)
+            if value is None:
+                with place:
+                    self._tell(_Event(task.generation, "started"))
+                    value = asked.request(task)
         except Cancelled:
             return
         except (InputError, OSError) as error:

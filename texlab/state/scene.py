@@ -103,6 +103,8 @@ class ColumnScene:
     result
         The finished result, or None while there is none for the present parameters. While a control is dragged it
         is the newest there is; ``result.job`` tells what it was made with.
+    stored
+        The result comes from the disk, without what explains it; a run makes that again.
     draft
         The picture is a quick one, made while a control is dragged.
     frames
@@ -147,6 +149,7 @@ class ColumnScene:
     image: FloatImage | None = None
     filled: NDArray[np.bool_] | None = None
     result: Result | None = None
+    stored: bool = False
     draft: bool = False
     frames: tuple[Frame, ...] = ()
     metrics: Mapping[str, float] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Folders for settings, presets and logs; ``TEXLAB_HOME`` replaces them all."""
+"""Folders for settings, presets, results and logs; ``TEXLAB_HOME`` replaces them all."""
 
 from __future__ import annotations
 
@@ -14,13 +14,19 @@ def _folder(kind: str) -> Path:
         import platformdirs
 
         dirs = platformdirs.PlatformDirs("texlab", appauthor=False)
-        folder = dirs.user_log_path if kind == "log" else dirs.user_config_path
+        folders = {"log": dirs.user_log_path, "cache": dirs.user_cache_path}
+        folder = folders.get(kind, dirs.user_config_path)
     return folder
 
 
 def config_dir() -> Path:
     """Return the folder of settings, presets and the last session (it may not exist yet)."""
     return _folder("config")
+
+
+def results_dir() -> Path:
+    """Return the folder of finished results, which may be removed at any time (it may not exist yet)."""
+    return _folder("cache") / "results"
 
 
 def log_file() -> Path:

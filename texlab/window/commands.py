@@ -23,6 +23,7 @@ COMMANDS = (
     Command("&File", "save-project", "Save pro&ject ...", "Ctrl+Alt+S", "Keep everything in one file"),
     Command("&File", "student-copy", "Save a copy for a st&udent ...", "", "Without paths of this computer"),
     Command("&File", "batch", "Run for &many ...", "", "Run the columns' methods on many images, or a plan"),
+    Command("&File", "forget-results", "&Forget kept results", "", "Remove finished results from the disk"),
     Command("&File", "another-window", "Another &window", "Ctrl+N", "Open a window with a session of its own"),
     Command("&File", "quit", "&Quit", "Ctrl+Q", "Close the window; the session comes back", separator=True),
     Command("&Edit", "undo", "&Undo", "Ctrl+Z", "Take the last change back"),

@@ -121,6 +121,7 @@ class Handlers(QObject):
             "save-project": self.projects.save,
             "student-copy": partial(self.projects.save, for_student=True),
             "another-window": self.open_another_window,
+            "forget-results": self.forget_results,
             "quit": self._window.close,
             "undo": session.undo,
             "redo": session.redo,
@@ -163,6 +164,17 @@ class Handlers(QObject):
         self._tuning.set_active(layout == "tune")
         self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
         self._workspace.fit()
+
+    def forget_results(self) -> None:
+        """Remove the finished results that are kept, and say how much that was."""
+        kept = self._controller.shared.kept
+
+        def done(found: tuple[int, int]) -> None:
+            count, size = found
+            what = "1 finished result" if count == 1 else f"{count} finished results"
+            self._controller.said.emit(f"{what} ({size / 2**20:.1f} MB) removed from the disk.")
+
+        self._controller.once("forget", lambda task: kept.forget(), done)
 
     def open_another_window(self) -> None:
         """Start the program once more, which takes a session that no window has."""

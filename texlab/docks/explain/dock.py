@@ -82,6 +82,11 @@ class ExplainDock(FramedDock):
             self.why = f"{column.title} has no finished result to explain."
             return None
         explainer = explainer_for(result.details)
+        if explainer is None and column.stored:
+            self.why = (
+                f"The result of {column.title} is kept from before; F5 makes it anew, with what explains it."
+            )
+            return None
         if explainer is None:
             self.why = without_words(column)
             return None
