@@ -89,7 +89,8 @@ class ParameterForm(QWidget):
         self._resets: dict[str, QToolButton] = {}
         self._error_rows: dict[str, int] = {}
         self._row = 0
-        self._error = Label()
+        # Rows come a few at a time; until its own has come it belongs here, too.
+        self._error = Label(parent=self)
         self._error.setObjectName("form-error")
         self._error.setProperty("role", "error")
         self._error.setWordWrap(True)

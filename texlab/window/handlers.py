@@ -161,7 +161,7 @@ class Handlers(QObject):
         fields = describe(type(column.params)) if column is not None else ()
         table = any(field.type is ThresholdTable for field in fields)
         self._window.big_panel.give_back()
-        self._tuning.set_active(layout == "tune")
+        self._tuning.set_active(layout == "tune", self._session.selected_id)
         self._window.layouts.arrange(layout, tuning="thresholds" if table else "histograms")
         self._workspace.fit()
 

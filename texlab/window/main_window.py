@@ -216,7 +216,7 @@ class MainWindow(QMainWindow):
         self.docks_menu.setToolTipsVisible(True)
 
     def _mark_layout(self) -> None:
-        self.actions_by_name[f"layout-{self.layouts.current}"].setChecked(True)
+        self.actions_by_name[f"layout-{self.layouts.current or LAYOUTS[0]}"].setChecked(True)
 
     def _fill_docks_menu(self) -> None:
         self.docks_menu.clear()

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from texlab.runs.worker import Worker
 from texlab.storage.paths import config_dir
+from texlab.window.export_desk import column_titles
 from texlab.window.popout_dialog import PopoutDialog, PopoutRequest
-from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.popout.design import Design, Setting, figures, usual_size
 from texlab_core.popout.store import FOLDER, PopoutStore
@@ -67,11 +67,8 @@ class PopoutDesk:
             self._window.themes.changed.connect(dialog.set_theme)
         dialog = self.dialog
         if dialog.resting:
-            state = self._controller.session.state
-            columns = [
-                (each.id, f"{place}. {each.name or find_method(each.method).title}")
-                for place, each in enumerate(state.columns, 1)
-            ]
+            named = enumerate(column_titles(self._controller).items(), 1)
+            columns = [(column_id, f"{place}. {title}") for place, (column_id, title) in named]
             dialog.set_columns(columns, secrets.randbelow(MOST_SEED + 1))
             dialog.show_setup()
         # Results and exemplar below it would help.

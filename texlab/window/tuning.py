@@ -111,11 +111,13 @@ class Tuning(QObject):
         """Whether the other columns are folded away."""
         return self._active
 
-    def set_active(self, active: bool) -> None:
-        """Show A and B alone, or all columns."""
+    def set_active(self, active: bool, chosen: int = 0) -> None:
+        """Show A and B alone, or all columns; ``chosen``, when it is one of the two, is A."""
         if self._active and not active:
             self._workspace.show_only(None)
-        if active and self._chosen == self.b:
+        if chosen:
+            self._note_choice(chosen)
+        if active and chosen and chosen == self.b:
             self.a, self.b = self.b, self.a
         self._active = active
         self.bar.setVisible(active)
@@ -126,8 +128,7 @@ class Tuning(QObject):
     def show_scene(self, scene: Scene) -> None:
         """Follow the choice and the pictures."""
         order = tuple(column.id for column in scene.columns)
-        if scene.selected_id != self._chosen:
-            self._before, self._chosen = self._chosen, scene.selected_id
+        self._note_choice(scene.selected_id)
         if scene.selected_id not in (self.a, self.b) or {self.a, self.b} - set(order) or order != self._order:
             # A copy is compared with what it was copied from, and that was chosen then.
             before = self.b if scene.selected_id == self.a else self._before
@@ -139,6 +140,10 @@ class Tuning(QObject):
         self._pictures = {column.id: column.picture for column in scene.columns}
         self._fold()
         self._show_pair()
+
+    def _note_choice(self, chosen: int) -> None:
+        if chosen != self._chosen:
+            self._before, self._chosen = self._chosen, chosen
 
     def _show_pair(self) -> None:
         view = self._workspace.columns.get(self.a)

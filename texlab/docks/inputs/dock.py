@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMenu, QPushButton
 
+from texlab.columns.titles import titles
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.inputs.crop_pane import CropPane
@@ -274,9 +275,9 @@ class InputsDock(FramedDock):
     def _fill_results(self, menu: QMenu) -> None:
         menu.clear()
         columns = self._scene.columns if self._scene is not None else ()
-        for place, column in enumerate(columns, 1):
+        for place, (column, title) in enumerate(zip(columns, titles(columns), strict=True), 1):
             if column.result is not None and (self._column is None or column.id != self._column.id):
-                text = f"{place}. {column.title}"
+                text = f"{place}. {title}"
                 menu.addAction(text).triggered.connect(partial(self._take_result, column.id))
         if menu.isEmpty():
             menu.addAction("No other column has a result").setEnabled(False)
