@@ -84,6 +84,22 @@ def test_normal_errors(kind: str) -> None:
         assert found == pytest.approx(written[:1], abs=1.0)
 
 
+def test_marks_and_points() -> None:
+    words = " ".join(stated("shape-from-texture", "marks and points").split())
+    pattern = r"From 100 .* is (\d+), (\d+) and (\d+) degrees .* points (\d+) degrees at slant 0 and (\d+) at 40\."
+    found = re.fullmatch(pattern, words)
+    assert found is not None
+    marks, density = _stated.evidence_errors()
+    assert [*marks, *density] == pytest.approx([float(each) for each in found.groups()], abs=0.8)
+
+
+def test_sphere() -> None:
+    words = stated("shape-from-texture", "sphere")
+    written = [float(each) for each in re.findall(r"\d+", words.partition("normals are")[2])[:4]]
+    # One of the two spheres.
+    assert _stated.sphere_errors((30,)) == pytest.approx(written, abs=3)
+
+
 def test_solids() -> None:
     from texlab_core.figures._tools import title_of
     from texlab_core.images.gallery import gallery
