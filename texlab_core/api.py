@@ -10,6 +10,7 @@ from texlab_core.engine.registry import find_method, methods
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.named_input import inputs_of
 from texlab_core.progress import progress_bar
 from texlab_core.series import Series
 
@@ -29,7 +30,7 @@ def synthesize(
     *,
     size: tuple[int, ...] | None = None,
     seed: int = 0,
-    inputs: Mapping[str, Input] | None = None,
+    inputs: Mapping[str, Source | Input | Mapping[str, Any]] | None = None,
     on_step: Callable[[Step], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
     progress: bool = False,
@@ -49,7 +50,8 @@ def synthesize(
     seed
         0 .. 2147483647; the same seed gives the same bits.
     inputs
-        Further named inputs, for methods that take some.
+        Further named inputs, for methods that take some: an image in any of the forms of ``image``, a file, or
+        what :mod:`texlab_core.engine.inputs` makes.
     on_step
         Called with every step while it runs.
     should_stop
@@ -82,7 +84,7 @@ def synthesize(
     chosen = find_method(method)
     job = Job(
         method=method,
-        inputs={**(inputs or {}), "exemplar": as_exemplar(image)},
+        inputs={**inputs_of([chosen], inputs or {}), "exemplar": as_exemplar(image)},
         params=chosen.params.from_json(params),
         size=size,  # type: ignore[arg-type]  # None takes the exemplar's
         seed=seed,
@@ -106,7 +108,7 @@ def sweep(
     vary: Mapping[str, Sequence[object]],
     size: tuple[int, ...] | None = None,
     seed: int = 0,
-    inputs: Mapping[str, Input] | None = None,
+    inputs: Mapping[str, Source | Input | Mapping[str, Any]] | None = None,
     on_step: Callable[[Step], None] | None = None,
     **params: object,
 ) -> Series:
@@ -144,6 +146,7 @@ def sweep(
     chosen = find_method(method)
     exemplar = as_exemplar(image)
     base = chosen.params.from_json(params)
+    further = inputs_of([chosen], inputs or {})
     axes = [Vary.of(name, list(values), chosen.params) for name, values in vary.items()]
     if not axes:
         raise InputError("vary: must name at least one parameter and its values.")
@@ -156,7 +159,7 @@ def sweep(
         jobs.append(
             Job(
                 method=method,
-                inputs={**(inputs or {}), "exemplar": exemplar},
+                inputs={**further, "exemplar": exemplar},
                 params=base.replace(**knobs),
                 size=size,  # type: ignore[arg-type]  # None takes the exemplar's
                 seed=change.get("seed", seed),
@@ -173,7 +176,7 @@ def compare(
     size: tuple[int, int] | None = None,
     seed: int = 0,
     same_phase: bool = False,
-    inputs: Mapping[str, Input] | None = None,
+    inputs: Mapping[str, Source | Input | Mapping[str, Any]] | None = None,
     on_step: Callable[[Step], None] | None = None,
 ) -> Series:
     """Run several methods on one exemplar; every result is made when it is asked for.
@@ -189,7 +192,7 @@ def compare(
     same_phase
         All take the same seed, which gives the spectral methods the same random phase.
     inputs
-        Further inputs by name; every method takes those that it knows.
+        Further inputs by name, as for :func:`synthesize`; every method takes those that it knows.
 
     Returns
     -------
@@ -205,7 +208,8 @@ def compare(
 
     exemplar = as_exemplar(image)
     names = FIRST_SIGHT if methods is None else methods
-    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=same_phase, inputs=inputs)
+    further = None if inputs is None else inputs_of([find_method(each) for each in names], inputs)
+    jobs = plan(exemplar, names, size=size, seed=seed, same_phase=same_phase, inputs=further)
     return Series(jobs, [{"method": job.method, "seed": job.seed} for job in jobs], on_step=on_step)
 
 

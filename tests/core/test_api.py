@@ -17,9 +17,11 @@ from texlab_core.engine.inputs import DataInput
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import EXEMPLAR, InputSpec
 from texlab_core.engine.run import run
-from texlab_core.errors import Cancelled, ImageError, ParamError
+from texlab_core.errors import Cancelled, ImageError, InputError, ParamError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from texlab_core.engine.steps import Step
 
 IMAGE = np.linspace(0, 1, 8 * 9, dtype=np.float32).reshape(8, 9)
@@ -65,6 +67,44 @@ def test_steps_and_cancel() -> None:
 def test_further_inputs() -> None:
     code = DataInput([1], "code")
     assert texlab_core.synthesize(IMAGE, "toy-pair", inputs={"code": code}).job.inputs["code"] is code
+
+
+def test_further_inputs_come_in_the_forms_that_exemplars_have(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    specs = (
+        EXEMPLAR,
+        InputSpec("other", "An image.", required=False),
+        InputSpec("mask", "Where.", required=False, background=0.0),
+        InputSpec("state", "Arrays.", kind="arrays", required=False),
+        InputSpec("code", "Some numbers.", kind="data", required=False),
+    )
+    stock(monkeypatch, registry._METHODS, noise_method(), noise_method(id="toy-many", inputs=specs))
+    clear = np.zeros((8, 9, 4), np.uint8)
+    path = tmp_path / "code.json"
+    path.write_text("[1, 2]")
+    np.savez(tmp_path / "state.npz", a=np.arange(3))
+    given = {"other": "gallery:stochastic-granite", "mask": clear, "state": {"a": np.arange(3)}, "code": [1, 2]}
+    made = texlab_core.synthesize(IMAGE, "toy-many", inputs=given).job.inputs
+    assert made["other"].sha256 == texlab_core.as_exemplar("gallery:stochastic-granite").sha256
+    # What is transparent is outside of a mask.
+    assert made["mask"].pixels.max() == 0  # type: ignore[union-attr]
+    files = {"other": IMAGE, "mask": IMAGE, "state": tmp_path / "state.npz", "code": str(path)}
+    (series, compared) = (
+        texlab_core.sweep(IMAGE, "toy-many", vary={"seed": [1]}, inputs=files),
+        texlab_core.compare(IMAGE, ["toy-noise", "toy-many"], inputs=files),
+    )
+    for job in (series[0].job, compared[1].job):
+        assert job.inputs["state"].sha256 == made["state"].sha256
+        assert job.inputs["code"].sha256 == made["code"].sha256
+        assert job.inputs["other"].sha256 == texlab_core.as_exemplar(IMAGE).sha256
+    assert set(compared[0].job.inputs) == {"exemplar"}
+    with pytest.raises(ImageError, match=r"^gone\.png: there is no such file"):
+        texlab_core.synthesize(IMAGE, "toy-many", inputs={"other": "gone.png"})
+    with pytest.raises(InputError, match=r"^state: must be an input of kind arrays, got list\.$"):
+        texlab_core.synthesize(IMAGE, "toy-many", inputs={"state": [1]})
+    with pytest.raises(ParamError, match="input: must be one of exemplar, other, mask, state, code"):
+        texlab_core.synthesize(IMAGE, "toy-many", inputs={"more": IMAGE})
 
 
 def test_what_does_not_fit_is_refused() -> None:

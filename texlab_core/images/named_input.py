@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from texlab_core.engine.inputs import ArraysInput, DataInput
+from texlab_core.engine.inputs import ArraysInput, DataInput, Input
 from texlab_core.errors import InputError, ParamError
 from texlab_core.files import strict_json
 from texlab_core.files.regular import open_regular, reason
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from texlab_core.engine.inputs import Crop, Input
+    from texlab_core.engine.inputs import Crop
     from texlab_core.engine.registry import InputSpec, Method
     from texlab_core.images.unit_range import Alpha
 
@@ -67,6 +69,42 @@ def read_input(
     if spec.read is not None:
         return spec.read(path)
     return DataInput(strict_json.load(path, what=f"the input {spec.name}"), path.name)
+
+
+def inputs_of(methods: Sequence[Method], given: Mapping[str, object]) -> dict[str, Input]:
+    """Return named inputs of what Python has in its place.
+
+    Parameters
+    ----------
+    methods
+        Whose inputs they are; the first that knows a name says what it takes.
+    given
+        By name: what :func:`read_input` reads, an array for an image, a mapping of arrays or JSON data for the
+        other kinds, or an input. What no method knows stays as it is.
+
+    Raises
+    ------
+    InputError
+        When one cannot be read or converted.
+    """
+    specs = {spec.name: spec for method in reversed(methods) for spec in method.inputs}
+    found: dict[str, Any] = {}
+    for name, each in given.items():
+        spec = specs.get(name)
+        found[name] = each if spec is None else _converted(each, spec)
+    return found
+
+
+def _converted(given: Any, spec: InputSpec) -> Any:
+    if isinstance(given, Input):
+        return given
+    if isinstance(given, str | os.PathLike):
+        return read_input(os.fspath(given), spec)
+    if spec.kind == "image":
+        return as_exemplar(given, background=spec.background)
+    if spec.kind == "arrays":
+        return ArraysInput(given, spec.name) if isinstance(given, Mapping) else given
+    return DataInput(given, spec.name)
 
 
 def read_arrays(path: Path) -> ArraysInput:
