@@ -25,9 +25,11 @@ from texlab_core.documents.project import (
     save_project,
 )
 from texlab_core.engine.inputs import ArraysInput, Crop, ImageInput
+from texlab_core.engine.levels import Levels
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
+from texlab_core.files.archive import pack_archive
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.writing import encode_image
 
@@ -221,7 +223,7 @@ def test_only_regular_files_are_read(tmp_path):
 
 
 CHANGES = {
-    "format": "preset", "version": 2, "extra": 1, "seed": -1, "size": {"width": 0, "height": 3}, "scale": 0,
+    "format": "preset", "version": 3, "extra": 1, "seed": -1, "size": {"width": 0, "height": 3}, "scale": 0,
     "chosen": 4, "crop": [0, 0, 400, 400], "columns": {}, "presets": [{"format": "texlab-preset"}], "notes": 3,
     "layout": "wild", "exemplar": "0" * 64,
 }  # fmt: skip
@@ -297,3 +299,64 @@ def test_a_project_that_would_be_too_large_is_refused(monkeypatch, tmp_path):
     monkeypatch.setattr("texlab_core.documents.project.MAX_BYTES", 100)
     with pytest.raises(InputError, match="at most 512 files"):
         encode_project(whole())
+
+
+@pytest.fixture
+def large(tmp_path, monkeypatch):
+    """Save a project of which a part of a large picture is used."""
+    monkeypatch.setattr("texlab_core.documents.project.LARGE", 1000)
+    pixels = np.random.default_rng(4).integers(0, 256, (40, 60, 3), np.uint8)
+    project = Project(
+        exemplar=as_exemplar(pixels, name="photo.png"),
+        columns=(ProjectColumn(method="pixels", params=find_method("pixels").params()),),
+        scale=0.5,
+        crop=Crop(2, 3, 10, 12),
+        levels=Levels(0.1, 0.9, 1.2),
+    )
+    path = tmp_path / "large.texlab"
+    save_project(path, project)
+    return path, project
+
+
+def test_the_part_in_use_comes_before_a_large_picture(large):
+    path, project = large
+    seen = []
+    whole = read_project(path, seen.append)
+    (first,) = seen
+    assert first.exemplar.size == (10, 12)
+    assert (first.scale, first.crop) == (1.0, None)
+    assert whole.exemplar.size == (40, 60)
+    assert (whole.scale, whole.crop, whole.levels) == (project.scale, project.crop, project.levels)
+    # Both work on the very same pixels, levels and all.
+    assert first.job(0).key == whole.job(0).key == project.job(0).key
+    assert read_project(path).exemplar.sha256 == whole.exemplar.sha256
+
+
+def test_only_what_has_a_part_of_a_large_picture_is_of_the_second_version(large, tmp_path):
+    _, project = large
+    for change, version in (({}, 2), ({"scale": 1.0, "crop": None}, 1)):
+        other = tmp_path / "other.texlab"
+        save_project(other, dataclasses.replace(project, **change))
+        with zipfile.ZipFile(other) as archive:
+            data = json.loads(archive.read("project.json"))
+        assert data["version"] == version
+        assert ("used" in data) == (version == 2)
+        seen = []
+        read_project(other, seen.append)
+        assert len(seen) == version - 1
+
+
+def test_a_part_that_is_another_one_is_refused(large, tmp_path):
+    path, project = large
+    save_project(tmp_path / "other.texlab", dataclasses.replace(project, crop=Crop(0, 0, 10, 12)))
+    with zipfile.ZipFile(tmp_path / "other.texlab") as archive:
+        foreign = json.loads(archive.read("project.json"))["used"]
+        others = {name: archive.read(name) for name in archive.namelist() if foreign in name}
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    for used, says in ((foreign, "is not the part of the exemplar"), (3, "the input used is missing")):
+        data = json.loads(files["project.json"]) | {"used": used}
+        changed = files | others | {"project.json": json.dumps(data).encode()}
+        (tmp_path / "bad.texlab").write_bytes(pack_archive(changed))
+        with pytest.raises(ProjectError, match=says):
+            read_project(tmp_path / "bad.texlab")

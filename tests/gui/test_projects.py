@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.columns.status import figures, numbers_of, shows_numbers
-from texlab.state.session import Sample, State
+from texlab.state.session import Sample, Session, State
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import open_project, project_of
 from texlab_core.documents.preset_store import PresetStore
@@ -162,3 +162,51 @@ def test_a_deep_source_of_a_restored_result_is_kept(tmp_path: Path) -> None:
     np.testing.assert_array_equal(opened.state.sample.source.pixels, sample.source.pixels)
     assert (opened.state.sample.crop, opened.state.sample.source.depth) == (Crop(1, 1, 16, 16), 16)
     assert opened.layout == "tune"
+
+
+def test_a_large_picture_comes_after_the_columns(
+    qtbot: Any, explorer: Explorer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("texlab_core.documents.project.LARGE", 1000)
+    explorer.controller.edit_crop(Crop(2, 4, 30, 32), True)
+    wait_idle(qtbot, explorer)
+    session, opener = explorer.session, explorer.opener
+    before = ids(explorer)
+    used = explorer.controller.exemplar.sha256
+    images = [result_image(explorer, each) for each in before]
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    first: list[Any] = []
+    whole = open_project(str(path), first.append)
+    assert first[0].state.sample.source.size == (30, 32)
+    assert first[0].pictures.keys() == whole.pictures.keys() == {1, 2}
+    seen: list[Any] = []
+    session.changed.connect(lambda _, state: seen.append(state.sample))
+    opener.open(str(path))
+    qtbot.waitUntil(lambda: bool(seen) and seen[-1].crop == Crop(2, 4, 30, 32))
+    wait_idle(qtbot, explorer)
+    # The part, and then the whole; one step of the history, on the very same pixels.
+    assert [each.source.size for each in seen] == [(30, 32), (40, 48)]
+    assert session.undo_text == "project a.texlab"
+    assert explorer.controller.exemplar.sha256 == used
+    for image, column_id in zip(images, ids(explorer), strict=True):
+        np.testing.assert_array_equal(result_image(explorer, column_id), image)
+    session.undo()
+    assert ids(explorer) == before
+    wait_idle(qtbot, explorer)
+
+
+def test_a_sample_is_replaced_in_the_whole_history() -> None:
+    pixels = np.zeros((8, 8, 1), np.float32)
+    one, other = (Sample(as_exemplar(pixels, name=name)) for name in ("one", "other"))
+    session = Session()
+    session.apply(State(one), "project")
+    session.set_seed(3)
+    assert session.replace_sample(one, other)
+    session.undo()
+    assert session.state.sample is other
+    cropped = dataclasses.replace(other, crop=Crop(0, 0, 4, 4))
+    session.apply(State(cropped), "crop")
+    assert not session.replace_sample(other, one)
+    assert session.state.sample.crop == cropped.crop
+    session.undo()
+    assert session.state.sample is one

@@ -355,9 +355,10 @@ class Controller(QObject):
         request: Request,
         done: Callable[[Any], None] | None = None,
         failed: Callable[[], None] | None = None,
+        progressed: Callable[[Any], None] | None = None,
     ) -> None:
         """Do something once in the background (open, save); a failure becomes one sentence, then ``failed()``."""
-        self._errands.run(name, request, done, failed)
+        self._errands.run(name, request, done, failed, progressed)
 
     # The end.
 

@@ -45,13 +45,16 @@ class Errands(QObject):
         request: Request,
         done: Callable[[Any], None] | None = None,
         failed: Callable[[], None] | None = None,
+        progressed: Callable[[Any], None] | None = None,
     ) -> None:
-        """Do something once; a failure becomes one sentence, then ``failed()``."""
+        """Do something once; a failure becomes one sentence, then ``failed()``; ``progressed`` gets reports."""
         worker = Worker(name, parent=self)
         self._workers[worker] = name
         self.changed.emit()
         if done is not None:
             worker.finished.connect(done)
+        if progressed is not None:
+            worker.progressed.connect(progressed)
         worker.failed.connect(self.failed)
         if failed is not None:
             worker.failed.connect(lambda _: failed())

@@ -249,6 +249,19 @@ class Session(QObject):
         else:
             self.history_changed.emit()
 
+    def replace_sample(self, one: Sample, other: Sample) -> bool:
+        """Put a sample in the place of one with the same pixels, in the whole history; not a step of it.
+
+        Return whether the present state has it now: what was cropped or scaled since is another sample.
+        """
+        before = self.state
+        for entry in self._entries:
+            if entry.state.sample is one:
+                entry.state = dataclasses.replace(entry.state, sample=other)
+        if self.state is not before:
+            self._announce(before)
+        return self.state.sample is other
+
     def reset_history(self) -> None:
         """Forget the history and keep the present state."""
         self._entries = [_Entry(self.state, "")]

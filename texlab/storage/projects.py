@@ -14,7 +14,7 @@ from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectC
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput
@@ -139,17 +139,28 @@ def _without_folders(project: Project) -> Project:
     return dataclasses.replace(project, exemplar=exemplar)
 
 
-def open_project(path: str) -> OpenedProject:
+def open_project(path: str, first: Callable[[OpenedProject], None] | None = None) -> OpenedProject:
     """Read a project file, and keep those of its presets that are not there yet; runs in a thread.
+
+    Parameters
+    ----------
+    path
+        The file.
+    first
+        Called with what can be shown before a large exemplar is unpacked: its sample is the part in use alone.
 
     Raises
     ------
     InputError
         One sentence when it is none, or damaged.
     """
+    project = read_project(path, None if first is None else lambda part: first(_opened(path, part, ())))
+    return _opened(path, project, _keep_presets(project))
+
+
+def _opened(path: str, project: Project, kept: Sequence[str]) -> OpenedProject:
     from texlab_core.images.formats.reading import read_image
 
-    project = read_project(path)
     sample = None
     if project.exemplar is not None:
         sample = Sample(project.exemplar, project.scale, project.crop, levels=project.levels)
@@ -167,7 +178,7 @@ def open_project(path: str) -> OpenedProject:
     state = State(sample, tuple(columns), project.seed, size, len(columns) + 1)
     names = ", ".join(dict.fromkeys(find_method(each.method).title for each in project.columns))
     said = [f"Opened {path}: {len(columns)} columns ({names})."]
-    if kept := _keep_presets(project):
+    if kept:
         said.append(f"New presets: {', '.join(kept)}.")
     return OpenedProject(
         state, project.chosen + 1 if columns else 0, pictures, measures, project.layout, tuple(said)

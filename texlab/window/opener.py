@@ -167,7 +167,9 @@ class Opener:
         self._newest += 1
         number = self._newest
 
-        def done(opened: OpenedProject) -> None:
+        parts: list[Sample] = []
+
+        def show(opened: OpenedProject) -> None:
             if number != self._newest:
                 return
             first = self._session.state.sample is None
@@ -178,6 +180,21 @@ class Opener:
             for place, picture in opened.pictures.items():
                 self._controller.show_stored(columns[place - 1].id, picture, opened.measures[place])
             self._forget_start(first)
+
+        def show_first(opened: OpenedProject) -> None:
+            show(opened)
+            if number == self._newest and opened.state.sample is not None:
+                parts.append(opened.state.sample)
+
+        def done(opened: OpenedProject) -> None:
+            whole = opened.state.sample
+            if parts and whole is not None:
+                # Also where something else was opened meanwhile: undo leads back to it.
+                self._session.replace_sample(parts[0], whole)
+            else:
+                show(opened)
+            if number != self._newest:
+                return
             self._settings.add_recent(path)
             if opened.layout:
                 self.layout_wanted(opened.layout)
@@ -187,7 +204,9 @@ class Opener:
             if otherwise and number == self._newest:
                 self.open_first_of(otherwise)
 
-        self._controller.once("open-project", lambda task: open_project(path), done, failed)
+        self._controller.once(
+            "open-project", lambda task: open_project(path, task.progress), done, failed, show_first
+        )
 
     def _open_document(self, path: str) -> None:
         def work(task: Task) -> Document:

@@ -143,13 +143,16 @@ def pack_pixels(pixels: FloatImage, limit: int = MAX_EMBEDDED) -> dict[str, Any]
 def unpack_pixels(packed: Mapping[str, Any], name: str) -> FloatImage:
     """Return (H, W, 1 | 3) float32 in [0, 1] from what :func:`pack_pixels` made.
 
+    A PNG may also come as it is, as ``bytes`` under that name: what was a file of its own needs no detour by text.
+
     Raises
     ------
     RecipeError
         When it is not that.
     """
     try:
-        data = base64.b64decode(packed["base64"], validate=True)
+        raw = packed.get("bytes")
+        data = raw if isinstance(raw, bytes) else base64.b64decode(packed["base64"], validate=True)
         if packed["encoding"] == "png":
             return _decode_png(data, name)
         if packed["encoding"] != "float32":
@@ -201,6 +204,8 @@ def _decode_png(data: bytes, name: str) -> FloatImage:
     if decoded.values.shape[2] not in (1, 3) or decoded.peak is None:
         raise ValueError("is no image")
     pixels: FloatImage = np.divide(decoded.values, np.float32(decoded.peak), dtype=np.float32)
+    # Nobody else has it: it is taken without a copy.
+    pixels.flags.writeable = False
     return pixels
 
 

@@ -2,12 +2,16 @@
 
 A project is a zip archive: ``project.json`` says what there is, ``inputs/`` holds the inputs, each once, and
 ``results/`` the pictures of finished columns. It needs nothing beside it, so that it can be moved and given away.
+Where a part of a large picture is used, that part is there too: columns can be shown, and run, before the picture
+has been unpacked.
 """
 
 from __future__ import annotations
 
 import base64
+import dataclasses
 import hashlib
+import math
 import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -31,14 +35,15 @@ from texlab_core.files.wording import printable
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from texlab_core.documents.presets import Preset
     from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method
 
 FORMAT = "texlab-project"
-VERSION = 1
+# Version 1 lacks the part of the exemplar that is used, and is what is written where it is not wanted.
+VERSION = 2
 SUFFIX = ".texlab"
 MAX_BYTES = 2**30
 MAX_FILES = 512
@@ -46,6 +51,8 @@ MAX_COLUMNS = 64
 MAX_PRESETS = 128
 MAX_NOTE = 100_000
 _MAX_TITLE = 200
+# A picture with fewer pixels is unpacked at once.
+LARGE = 2**20
 # Of one input, before it goes into the archive.
 _MAX_INPUT = 256 * 2**20
 _LAYOUTS = ("", "explore", "teach", "tune")
@@ -54,7 +61,7 @@ _NAMES = re.compile(
     r"project\.json|inputs/[0-9a-f]{64}\.json|inputs/[0-9a-f]{64}-(?:source|pixels|alpha)\.png|results/\d{1,3}\.png"
 )
 _KEYS = ("format", "version", "versions", "exemplar", "scale", "crop", "seed", "size", "columns", "chosen",
-         "presets", "notes", "layout", "levels")  # fmt: skip
+         "presets", "notes", "layout", "levels", "used")  # fmt: skip
 _COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "seed", "pinned", "result", "measures")
 _PIXELS = ("source", "pixels", "alpha")
 
@@ -177,7 +184,7 @@ def encode_project(project: Project) -> bytes:
     crop = project.crop
     data = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": VERSION if (used := _used_part(project)) is not None else 1,
         "versions": dict(versions()),
         "exemplar": None if project.exemplar is None else _put(project.exemplar, inputs),
         "scale": project.scale,
@@ -203,8 +210,22 @@ def encode_project(project: Project) -> bytes:
         "notes": project.notes,
         "layout": project.layout,
     } | ({} if project.levels is None else {"levels": project.levels.to_json()})
+    if used is not None:
+        data["used"] = _put(used, inputs)
     _check_room(inputs, results)
     return pack_archive({"project.json": strict_json.dumps(data).encode(), **results, **inputs})
+
+
+def _used_part(project: Project) -> ImageInput | None:
+    """Return the part of a large exemplar that is used, before its levels; None where all of it is."""
+    from texlab_core.images.exemplar import as_exemplar
+
+    whole = project.exemplar
+    if whole is None or math.prod(whole.size) < LARGE or (project.scale == 1.0 and project.crop is None):
+        return None
+    part = as_exemplar(whole, scale=project.scale, crop=project.crop)
+    # It is a picture of its own here, whatever it was taken from.
+    return dataclasses.replace(part, origin=None, notes=())
 
 
 def _check_room(*parts: Mapping[str, bytes]) -> None:
@@ -236,8 +257,16 @@ def _put(given: Input, files: dict[str, bytes]) -> str:
     return name
 
 
-def read_project(path: str | os.PathLike[str]) -> Project:
+def read_project(path: str | os.PathLike[str], first: Callable[[Project], None] | None = None) -> Project:
     """Read a project file; whatever it holds, the answer is a checked project or one sentence.
+
+    Parameters
+    ----------
+    path
+        The file.
+    first
+        Called, before a large exemplar is unpacked, with the project whose exemplar is the part in use, at scale 1
+        and without a crop: its columns work on the very same pixels. Not called where there is no such part.
 
     Raises
     ------
@@ -252,7 +281,12 @@ def read_project(path: str | os.PathLike[str]) -> Project:
     try:
         checked = strict_json.check_document(data, "project", form=FORMAT, version=VERSION, error=ProjectError)
         strict_json.check_keys(checked, _KEYS, ProjectError)
-        return _Reader(files).project(checked)
+        reader = _Reader(files)
+        if first is not None and checked.get("used") is not None:
+            first(reader.project(checked | {"exemplar": checked["used"], "scale": 1.0, "crop": None}))
+        made = reader.project(checked)
+        reader.check_used(checked, made)
+        return made
     except InputError as error:
         raise ProjectError(f"T{what[1:]} cannot be used: {error}") from error
 
@@ -293,6 +327,17 @@ class _Reader:
         )
         _check_crop(made)
         return made
+
+    def check_used(self, data: dict[str, Any], whole: Project) -> None:
+        """Raise ``ProjectError`` when the part of the exemplar that is used is another one."""
+        from texlab_core.images.exemplar import as_exemplar
+
+        if data.get("used") is None:
+            return
+        part = self._input(data["used"], "used", "image")
+        exemplar = whole.exemplar
+        if exemplar is None or as_exemplar(exemplar, scale=whole.scale, crop=whole.crop).sha256 != part.sha256:
+            raise ProjectError("used: is not the part of the exemplar that is used.")
 
     def _column(self, data: Any, place: int) -> ProjectColumn:
         if not isinstance(data, dict):
@@ -343,7 +388,7 @@ class _Reader:
                 held = entry.get(key)
                 if isinstance(held, dict) and held.get("encoding") == "png":
                     picture = self._files.get(f"inputs/{name}-{key}.png", b"")
-                    entry[key] = {"encoding": "png", "base64": base64.b64encode(picture).decode("ascii")}
+                    entry[key] = {"encoding": "png", "bytes": picture}
             self._found[name, kind] = parse_input(role, entry, kind).restore()
         return self._found[name, kind]
 
