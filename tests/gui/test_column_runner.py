@@ -138,7 +138,7 @@ def test_a_picture_of_a_drag_is_measured_when_no_other_follows(runner: Any, monk
         now[0] += 0.016
         start(runner, draft=True)
         runner._finished(finished((96, 128), 0.02 + number / 100, draft=True))
-        # The next event comes within two frames: no core is taken from its picture.
+        # The next event comes soon: no core is taken from its picture.
         assert (len(measured), runner.measuring) == (1, True)
     runner._rest.timeout.emit()
     assert len(measured) == 2

@@ -192,3 +192,36 @@ def test_whole_boxes_of_the_window_show_plain_digits(explorer: Any) -> None:
     for box in boxes:
         assert box.locale().language() == QLocale.Language.C
         assert box.textFromValue(123456) == "123456"
+
+
+@pytest.mark.parametrize(("kind", "value", "other"), [(NumberBox, 0.25, 0.5), (WholeBox, 7, 9)])
+def test_a_value_that_is_shown_already_is_not_painted_again(qtbot: Any, kind: Any, value: Any, other: Any) -> None:
+    painted: list[int] = []
+
+    class Box(kind):  # type: ignore[misc]
+        """Counts."""
+
+        def paintEvent(self, event: Any) -> None:
+            painted.append(1)
+            super().paintEvent(event)
+
+    box = Box()
+    qtbot.addWidget(box)
+    box.setSuffix(" px")
+    box.setValue(value)
+    box.show()
+    qtbot.waitUntil(lambda: bool(painted), timeout=5000)
+    QTest.qWait(0)
+    painted.clear()
+    for _ in range(3):
+        box.setValue(value)
+        QTest.qWait(0)
+    assert painted == []
+    box.setValue(other)
+    qtbot.waitUntil(lambda: bool(painted), timeout=5000)
+    assert box.value() == other
+    # What was typed and not taken goes when the value is set again.
+    shown = box.text()
+    box.lineEdit().setText("3,,")
+    box.setValue(other)
+    assert box.text() == shown

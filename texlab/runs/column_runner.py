@@ -65,8 +65,8 @@ class Shared:
 OVERDUE_S = 0.7
 # but no more often than that measuring takes this share of the time.
 MEASURING_SHARE = 0.05
-# A draft is measured when the next event does not come within two frames.
-REST_MS = 32
+# A draft is measured when the next event does not come within this: it would take a core from its picture.
+REST_MS = 60
 
 
 class ColumnRunner(QObject):

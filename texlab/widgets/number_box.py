@@ -38,6 +38,11 @@ def _judged(box: QSpinBox | QDoubleSpinBox, value: float | None, text: str, posi
     return QValidator.State.Intermediate, text, position
 
 
+def _shows(box: QSpinBox | QDoubleSpinBox, written: str) -> bool:
+    """Whether the box shows this number: Qt would repaint it all the same, at every event of a drag."""
+    return box.text() == f"{box.prefix()}{written}{box.suffix()}"
+
+
 class NumberBox(QDoubleSpinBox):
     """A number box that takes 0.25 and 0,25 alike, whatever the language of the machine.
 
@@ -47,6 +52,11 @@ class NumberBox(QDoubleSpinBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         _prepare(self)
+
+    def setValue(self, value: float) -> None:
+        """Take and show a value."""
+        if value != self.value() or not _shows(self, self.textFromValue(value)):
+            super().setValue(value)
 
     def validate(self, text: str, position: int) -> _Read:
         """Let anything be typed; only a number within the range is acceptable."""
@@ -93,6 +103,11 @@ class WholeBox(QSpinBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         _prepare(self)
+
+    def setValue(self, value: int) -> None:
+        """Take and show a value."""
+        if value != self.value() or not _shows(self, self.textFromValue(value)):
+            super().setValue(value)
 
     def validate(self, text: str, position: int) -> _Read:
         """Let anything be typed; only a whole number within the range is acceptable."""
