@@ -47,6 +47,8 @@ def test_markup_is_no_text() -> None:
     assert (first.heading, first.text) == ("Pyramids", "Bands of a steerable pyramid, scales of them.")
     assert second.heading == "Two orientations"
     assert second.text == "a figure of bands one two 2*3 snake_case # not a heading a_b = 1"
+    (commented,) = sections_of("<!-- numbers -->\n\nSeven.\n\n<!-- end of numbers -->")
+    assert commented.text == "Seven."
 
 
 @pytest.mark.parametrize(

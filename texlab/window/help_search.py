@@ -15,6 +15,7 @@ IN_TITLE, IN_HEADING, IN_TEXT, MOST_OF_TEXT = 100, 20, 1, 10
 _HEADING = re.compile(r"#+\s+(.*)")
 _PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)")
 _LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+_COMMENT = re.compile(r"<!--.*?-->")
 _RULE = re.compile(r"[|\s:-]*")
 _SIGNS = re.compile(r"\\([\\`*_{}\[\]<>#+\-!|&])|(?<!\w)[*_]{1,3}(?=\S)|(?<=\S)[*_]{1,3}(?!\w)|`")
 
@@ -73,7 +74,7 @@ def sections_of(markdown: str) -> tuple[Section, ...]:
 
 def _plain(line: str) -> str:
     """Return a line without markup; of pictures and links the words stay, of tables the cells."""
-    line = _LINK.sub(r"\1", _PICTURE.sub(r"\1", line))
+    line = _LINK.sub(r"\1", _PICTURE.sub(r"\1", _COMMENT.sub("", line)))
     if "|" in line:
         line = "" if _RULE.fullmatch(line) else line.strip().strip("|").replace("|", " ")
     return _SIGNS.sub(lambda match: match[1] or "", line)
