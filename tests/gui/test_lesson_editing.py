@@ -8,21 +8,25 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from dock_scenes import feed, scene_of
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt
 
 from tests.gui.conftest import ids, wait_idle
 from tests.gui.test_lessons import SMALL, give, wait_ready
 from texlab.docks.lessons.dock import LessonsDock
 from texlab.docks.lessons.editor import ORDER_KEYS, LessonEditor
 from texlab.runs import lesson_runner
+from texlab.runs.controller import Controller
 from texlab.state.intentions import ChangeLesson, CopyLesson, GoToStep, LeaveLesson, SaveStep, UndoLesson
 from texlab.state.lesson_edits import Version, Versions, doubled, moved, removed, shown_alike, with_steps
 from texlab.state.lesson_scene import LessonScene
+from texlab.state.session import Session
 from texlab.storage.paths import config_dir
 from texlab.widgets.settling import settle_all
+from texlab.window.lesson_desk import LessonDesk
 from texlab_core.documents.lessons import Lesson, LessonStep, lesson_from_json, read_lesson
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from texlab.app.explorer import Explorer
@@ -215,6 +219,77 @@ def test_the_dock_edits_lessons_of_ones_own_and_copies_others(qtbot: Any) -> Non
     give_it(True, "other")
     assert not dock.edit_button.isChecked()
     assert dock.list.isVisible()
+
+
+# Two windows with one lesson.
+
+
+@pytest.fixture
+def desks(qtbot: Any, qapp: Any, tmp_path: Path) -> Iterator[tuple[tuple[LessonDesk, LessonDesk], list[str]]]:
+    """The desks of two windows with one folder, and what both said."""
+    said: list[str] = []
+    parent: Any = QObject()
+    made = []
+    controllers = [Controller(Session(parent), parent) for _ in range(2)]
+    for controller in controllers:
+        controller.problem.connect(said.append)
+        made.append(LessonDesk(parent, controller, {}, tmp_path / "lessons"))
+    yield (made[0], made[1]), said
+    for desk, controller in zip(made, controllers, strict=True):
+        desk.close()
+        controller.close()
+
+
+def keep(qtbot: Any, desk: LessonDesk, name: str, lesson: Lesson) -> None:
+    with qtbot.waitCallback() as written:
+        desk.write(name, lesson, written)
+
+
+def test_what_another_window_has_changed_is_not_written_over(qtbot: Any, desks: Any) -> None:
+    (here, there), said = desks
+    moves: list[tuple[str, str]] = []
+    there.moved = lambda *each: moves.append(each)
+    first = lesson_from_json(SMALL)
+    keep(qtbot, here, "small", first)
+    file = here.folder / "small.json"
+    for desk in (here, there):
+        desk.note("small", read_lesson(file))
+    ours, theirs = (dataclasses.replace(first, title=title) for title in ("Ours", "Theirs"))
+    keep(qtbot, here, "small", ours)
+    assert said == []
+    keep(qtbot, there, "small", theirs)
+    assert moves == [("small", "small-2")]
+    assert [each.split(";")[1] for each in said] == [" what is changed here is kept in small-2."]
+    # Each goes on with its own, and nothing is said twice.
+    keep(qtbot, here, "small", dataclasses.replace(ours, summary="More."))
+    keep(qtbot, there, there.current("small"), dataclasses.replace(theirs, summary="Other."))
+    keep(qtbot, there, "small", dataclasses.replace(theirs, summary="Another."))
+    kept = {path.stem: read_lesson(path) for path in here.folder.glob("*.json")}
+    assert {name: (each.title, each.summary) for name, each in kept.items()} == {
+        "small": ("Ours", "More."),
+        "small-2": ("Theirs", "Another."),
+    }
+    assert len(said) == 1
+    # Whoever opens it again has seen what is there.
+    there.note("small", read_lesson(file))
+    keep(qtbot, there, "small", theirs)
+    assert read_lesson(file).title == "Theirs"
+    assert len(said) == 1
+
+
+def test_a_new_lesson_takes_no_name_that_is_taken_meanwhile(qtbot: Any, desks: Any) -> None:
+    (here, there), said = desks
+    assert here.free_name("Mine") == there.free_name("Mine") == "mine"
+    keep(qtbot, here, "mine", lesson_from_json(SMALL))
+    keep(qtbot, there, "mine", dataclasses.replace(lesson_from_json(SMALL), title="There"))
+    assert read_lesson(here.folder / "mine.json").title == SMALL["title"]
+    assert read_lesson(here.folder / "mine-2.json").title == "There"
+    assert len(said) == 1
+    # What somebody writes by hand stays, even half written.
+    (here.folder / "mine.json").write_text("{")
+    keep(qtbot, here, "mine", lesson_from_json(SMALL))
+    assert (here.folder / "mine.json").read_text() == "{"
+    assert read_lesson(here.folder / "mine-3.json").title == SMALL["title"]
 
 
 # In the window.

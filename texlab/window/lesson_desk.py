@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from texlab.runs.worker import Worker
 from texlab.state.lessons import Draft, source_of, step_of
+from texlab.storage.sessions import writing
+from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -45,10 +47,27 @@ class LessonDesk:
         # The tab that was looked at before the lessons were: what is kept is kept from there.
         self._tab = ""
         self._told: dict[str, Callable[[], None]] = {}
+        # What this window has last read or written of each file; another window may have written since.
+        self._known: dict[str, Lesson] = {}
+        self._moved: dict[str, str] = {}
+        self.moved: Callable[[str, str], None] = lambda name, free: None
+        """Told when a lesson goes on under another name, since its file was changed by somebody else."""
+        self._said: set[str] = set()
         self._lock = threading.Lock()
         self._worker = Worker("lessons", parent=window)
         self._worker.finished.connect(self._written)
         self._worker.failed.connect(controller.problem)
+
+    def note(self, name: str, lesson: Lesson) -> None:
+        """Take note of a lesson of the user's own that was just read."""
+        with self._lock:
+            self._known[name] = lesson
+            self._moved.pop(name, None)
+
+    def current(self, name: str) -> str:
+        """Return the name under which a lesson goes on."""
+        with self._lock:
+            return self._moved.get(name, name)
 
     def watch_tabs(self) -> None:
         """Take note of the tab that is in front, from now on: the window has its tabs."""
@@ -70,6 +89,9 @@ class LessonDesk:
 
     def write(self, name: str, lesson: Lesson, done: Callable[[], None], *, pictures: bool = False) -> None:
         """Write a lesson, then call ``done``; of several that wait the newest alone is written.
+
+        A file that was changed by somebody else since this window has seen it stays as it is: the lesson goes on
+        under a name of its own.
 
         Parameters
         ----------
@@ -94,27 +116,60 @@ class LessonDesk:
         """Wait until everything is written: what is changed while the window closes is written too."""
         self._worker.finish()
 
-    def _work(self, _: Any) -> list[str]:
-        names: list[str] = []
+    def _work(self, _: Any) -> list[tuple[str, str]]:
+        names: list[tuple[str, str]] = []
         while True:
             with self._lock:
                 if not self._waiting:
                     return names
                 name = next(iter(self._waiting))
                 lesson, image = self._waiting.pop(name)
-            self._write_one(name, lesson, image)
-            names.append(name)
+            names.append((name, self._write_one(name, lesson, image)))
 
-    def _write_one(self, name: str, lesson: Lesson, image: ImageInput | None) -> None:
+    def _write_one(self, name: str, lesson: Lesson, image: ImageInput | None) -> str:
+        """Write a lesson; return the name under which it is kept."""
         from texlab_core.documents.lessons import write_lesson
 
         self.folder.mkdir(parents=True, exist_ok=True)
         if image is not None and source_of(image, "") == "":
             save_picture(image.pixels, self.folder / name / f"{image.sha256[:16]}.png")
-        write_lesson(dataclasses.replace(lesson, folder=self.folder), self.folder / f"{name}.json")
+        # No other window writes between the look and the writing.
+        with writing(LESSONS):
+            kept = self.current(name)
+            if self._is_changed(kept):
+                kept = self.free_name(kept)
+            write_lesson(dataclasses.replace(lesson, folder=self.folder), self.folder / f"{kept}.json")
+        with self._lock:
+            self._known[kept] = lesson
+            if kept != name:
+                self._moved[name] = kept
+        return kept
 
-    def _written(self, names: list[str]) -> None:
-        for name in dict.fromkeys(names):
+    def _is_changed(self, name: str) -> bool:
+        """Return whether a file holds something else than what this window has last seen there."""
+        from texlab_core.documents.lessons import read_lesson
+
+        path = self.folder / f"{name}.json"
+        if not path.exists():
+            return False
+        with self._lock:
+            known = self._known.get(name)
+        try:
+            return known is None or read_lesson(path).to_json() != known.to_json()
+        except InputError:
+            # What somebody is writing by hand stays too.
+            return True
+
+    def _written(self, names: list[tuple[str, str]]) -> None:
+        for name, kept in names:
+            if kept != name and kept not in self._said:
+                self._said.add(kept)
+                self.moved(name, kept)
+                self._controller.problem.emit(
+                    f"The lesson {name} was changed by another window or program, and stays as it is there; what"
+                    f" is changed here is kept in {kept}."
+                )
+        for name, _ in dict.fromkeys(names):
             with self._lock:
                 told = None if name in self._waiting else self._told.pop(name, None)
             if told is not None:

@@ -88,6 +88,7 @@ class Teacher(QObject):
         self._to_show: LessonStep | None = None
         self._scene = LessonScene(folder=folder)
         self.desk = LessonDesk(window, controller, hosts, folder)
+        self.desk.moved = self._moved
         self._versions = Versions()
         self.runner = LessonRunner(controller.shared, self)
         self.runner.opened.connect(self._begin)
@@ -158,6 +159,8 @@ class Teacher(QObject):
             # Columns of the lesson are none of the user's.
             self._first_id = self._aside.state.next_id
         self._opened = opened
+        if self._wanted.own:
+            self.desk.note(opened.name, opened.lesson)
         if (opened.name, self._wanted.own) != (self._scene.name, self._scene.own):
             self._versions.clear()
         self._scene = dataclasses.replace(
@@ -318,9 +321,14 @@ class Teacher(QObject):
             self._written(lesson)
             # Who has gone elsewhere since stays there.
             if asked == self._asked:
-                self._open(OpenLesson(name, own=True), place)
+                self._open(OpenLesson(self.desk.current(name), own=True), place)
 
         self.desk.write(name, lesson, done, pictures=True)
+
+    def _moved(self, name: str, free: str) -> None:
+        """Go on with the lesson under the name that its file has got."""
+        if self._scene.own and self._scene.name == name:
+            self._scene = dataclasses.replace(self._scene, name=free)
 
     def _written(self, lesson: Lesson) -> None:
         self._scene = dataclasses.replace(self._scene, shelf=self._scene.shelf + 1)
