@@ -53,6 +53,14 @@ def test_a_picture_comes_in_and_goes_out(tmp_path, photo, texlab):
     assert np.array_equal(read_image(again, "piped").values, wanted)
 
 
+def test_a_further_input_comes_in_by_its_name(tmp_path, photo, texlab):
+    words = ("synth", photo, "--method", "mixture", "--size", "20x12", "--set", "iterations=1")
+    code, out, err = piped(tmp_path, *words, "--input", "second=-", "--out", "-", given=photo.read_bytes())
+    assert (code, err) == (0, "")
+    assert texlab(*words, "--input", f"second={photo}", "--out", "a.png").code == 0
+    assert np.array_equal(read_image(out, "piped").values, read_image(Path("a.png"), "a").values)
+
+
 @pytest.mark.parametrize("command", ["compare", "sweep"])
 def test_sheets_are_piped_too(tmp_path, photo, command):
     more = {"compare": ["--methods", "tiling"], "sweep": ["--method", "tiling", "--vary", "seed=1,2"]}[command]
@@ -70,10 +78,16 @@ def test_a_code_goes_out_as_text(tmp_path, photo):
 @pytest.mark.parametrize(
     ("words", "given", "sentence"),
     [
-        (["synth", "-", *TILING, "--out", "a.png"], b"", "Nothing came from standard input"),
+        (["synth", "-", *TILING, "--out", "a.png"], b"", "Nothing came from standard"),
         (["synth", "-", *TILING, "--out", "a.png"], b"junk", "texlab: standard input: is not an image"),
         (["synth", "in/photo-0.png", *TILING, "--out", "-", "--json"], b"", "both want standard output"),
         (["fill", "-", "--mask", "-", "--out", "a.png"], b"x", "only one of image and mask"),
+        (["synth", "-", *TILING, "--input", "second=-", "--out", "a.png"], b"x", "only one of image and second"),
+        (
+            ["synth", "in/photo-0.png", *TILING, "--input", "second=-", "--out", "a.png"],
+            b"",
+            "Nothing came from standard",
+        ),
         (["batch", "-", "--out", "out"], b"x", "A plan is a .json or .toml file"),
     ],
 )

@@ -28,7 +28,8 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
     args
         The arguments; those that are ``-`` become paths.
     command
-        Its ``READS`` are the names of arguments that may be ``-``, its ``WRITES`` the ending of ``--out -``.
+        Its ``READS`` are the names of arguments that may be ``-``, its ``WRITES`` the ending of ``--out -``; where
+        it takes ``--input NAME=FILE``, one of these files may be ``-`` too.
 
     Raises
     ------
@@ -36,12 +37,15 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
         When two arguments are ``-``, nothing comes in, or a picture would go to a terminal or among other output.
     """
     reading = [name for name in getattr(command, "READS", ()) if getattr(args, name, None) == STREAM]
+    named = getattr(args, "input", None)
+    inputs = named if isinstance(named, list) else []
+    roles = [text.partition("=")[0] for text in inputs if text.partition("=")[2] == STREAM]
     ending = getattr(command, "WRITES", "") if getattr(args, "out", None) == STREAM else ""
-    if not reading and not ending:
+    if not reading and not roles and not ending:
         yield
         return
-    if len(reading) > 1:
-        raise InputError(f"Standard input can be only one of {' and '.join(reading)}.")
+    if len([*reading, *roles]) > 1:
+        raise InputError(f"Standard input can be only one of {' and '.join([*reading, *roles])}.")
     if ending and getattr(args, "json", False):
         raise InputError("--out - and --json both want standard output; choose one of them.")
     if ending and sys.stdout.isatty():
@@ -54,6 +58,9 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
     with tempfile.TemporaryDirectory(prefix="texlab-") as folder:
         if reading:
             setattr(args, reading[0], str(_take_in(Path(folder))))
+        if roles:
+            piped = f"{roles[0]}={_take_in(Path(folder))}"
+            args.input = [piped if text == f"{roles[0]}={STREAM}" else text for text in inputs]
         out = Path(folder) / f"{_OUT}{ending}"
         with contextlib.ExitStack() as stack:
             if ending:
