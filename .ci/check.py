@@ -1,6 +1,7 @@
 """Everything that must hold, stage by stage, with the time of each: ``python .ci/check.py [lint|test]``.
 
-Runs in the virtual environment that ``setup_env.py`` has made, and stops at the first stage that fails.
+Runs in the virtual environment that ``setup_env.py`` has made. The stages of lint run beside each other; tests run
+only when none of them fails, and stop at the first stage that does.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,13 +27,18 @@ LINT = {
         "from importlinter.cli import lint_imports_command; lint_imports_command()",
     ],
 }
+# In a new clone compiling takes as long as all of lint together; the tests' processes would each do it again.
+KERNELS = {"kernels": [PYTHON, "-c", "from texlab_core.warming import warm_up; warm_up()"]}
 COVERAGE = ["--cov", "--cov-report="]
 SCREEN = ["-o", "xvfb_width=1920", "-o", "xvfb_height=1200", "-o", "xvfb_colordepth=24"]
 
 
 def main(goal: str) -> int:
     """Run the stages of ``goal``; return the exit code of the first that fails, or 0."""
-    stages = dict(LINT) if goal == "lint" else LINT | tests()
+    code = at_once(LINT if goal == "lint" else LINT | KERNELS)
+    if code or goal == "lint":
+        return code
+    stages = tests()
     for name, command in stages.items():
         print(f"== {name}", flush=True)
         start = time.monotonic()
@@ -40,11 +47,30 @@ def main(goal: str) -> int:
             environment["TEXLAB_TEST_PLATFORM"] = "xcb"
         code = subprocess.run(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, check=False).returncode
         # pytest's own last lines tell the time of the last stage, and stay the last ones.
-        if code or name != list(stages)[-1] or goal == "lint":
+        if code or name != list(stages)[-1]:
             print(f"== {name}: {'failed after ' if code else ''}{time.monotonic() - start:.0f} s", flush=True)
         if code:
             return code
     return 0
+
+
+def at_once(stages: dict[str, list[str]]) -> int:
+    """Run stages beside each other, print what each says at its end; return 0, or the code of one that failed."""
+
+    def run(name: str) -> int:
+        start = time.monotonic()
+        done = subprocess.run(
+            stages[name], cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
+        )
+        said = f"{done.stdout}{done.stderr}".strip()
+        failed = "failed after " if done.returncode else ""
+        lines = [f"== {name}", said, f"== {name}: {failed}{time.monotonic() - start:.0f} s"]
+        print("\n".join(filter(None, lines)), flush=True)
+        return done.returncode
+
+    # The longest first: they wait for a processor, not for each other.
+    with ThreadPoolExecutor(max(2, os.cpu_count() or 1)) as pool:
+        return next(filter(None, list(pool.map(run, reversed(stages)))), 0)
 
 
 def tests() -> dict[str, list[str]]:

@@ -34,6 +34,11 @@ PATIENCE_S = 20.0
 MOVE_S = 2.0
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the slow ones: of several processes none is left alone with one of them at the end."""
+    items.sort(key=lambda item: item.get_closest_marker("slow") is None)
+
+
 @pytest.fixture(autouse=True)
 def texlab_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Keep settings, logs and presets of a test inside its own folder."""
@@ -99,7 +104,7 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
         yield
         return
     from PySide6.QtCore import QEvent, QObject, Qt
-    from PySide6.QtGui import QCursor
+    from PySide6.QtGui import QCursor, QShowEvent
     from PySide6.QtWidgets import QWidget
 
     app = request.getfixturevalue("qapp")
@@ -107,7 +112,8 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 
     class Manager(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-            shown = event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow()
+            # Every event of the application comes here: asking for its class costs least.
+            shown = isinstance(event, QShowEvent) and isinstance(watched, QWidget) and watched.isWindow()
             if shown and watched.windowType() in activated:
                 watched.activateWindow()
                 app.processEvents()
@@ -125,7 +131,7 @@ def desktop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 def _move_mouse(widget: QWidget, pos: QPoint, delay: int = -1) -> None:
     """Move the pointer and wait until the server, which answers later, has told of it."""
     from PySide6.QtCore import QEvent, QObject
-    from PySide6.QtGui import QCursor
+    from PySide6.QtGui import QCursor, QMouseEvent
     from PySide6.QtTest import QTest
     from PySide6.QtWidgets import QApplication
 
@@ -134,8 +140,8 @@ def _move_mouse(widget: QWidget, pos: QPoint, delay: int = -1) -> None:
 
     class Listener(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-            if event.type() == QEvent.Type.MouseMove:
-                told.append(event.globalPosition().toPoint())  # type: ignore[attr-defined]
+            if isinstance(event, QMouseEvent) and event.type() == QEvent.Type.MouseMove:
+                told.append(event.globalPosition().toPoint())
             return False
 
     listener = Listener()

@@ -341,6 +341,31 @@ def test_uninterrupted_blocks_leave_no_trace() -> None:
     assert ([signal.getsignal(number) for number in numbers], sys.unraisablehook) == before
 
 
+# The command line, which says when a run is on its way: its first step is there.
+TOLD = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from texlab.cli.main import main
+from texlab_core.engine import run as engine
+
+drive = engine._drive
+
+def told(steps, *rest):
+    def watched():
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                return end.value
+            print("a step", flush=True)
+            yield step
+    return drive(watched(), *rest)
+
+engine._drive = told
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 @posix
 @pytest.mark.slow
 @pytest.mark.parametrize("presses", [1, 3])
@@ -356,16 +381,11 @@ def test_uninterrupted_blocks_leave_no_trace() -> None:
 def test_ctrl_c_ends_with_130_and_without_half_a_file(tmp_path: Path, arguments: list[str], presses: int) -> None:
     command = [arguments[0], "gallery:structured-pebbles", *arguments[1:], "--out", str(tmp_path / "a.png")]
     # Whoever runs the tests may have the signal ignored.
-    started = (
-        "import signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "from texlab.cli.main import main\nprint('go', flush=True)\nsys.exit(main(sys.argv[1:]))"
-    )
     with subprocess.Popen(
-        [sys.executable, "-c", started, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [sys.executable, "-c", TOLD, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
         assert process.stdout is not None
-        process.stdout.readline()
-        time.sleep(1.5)
+        assert process.stdout.readline() == b"a step\n"
         for _ in range(presses):
             process.send_signal(signal.SIGINT)
             time.sleep(0.02)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import weakref
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,9 @@ PATIENCE_MS = 180_000
 def compiled() -> None:
     """Compile the methods' kernels before any test waits for one: in a new clone that takes most of a minute."""
     warm_up()
+    # What is loaded by now stays: looking through it for garbage takes most of a collection.
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True)

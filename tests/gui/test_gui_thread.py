@@ -145,6 +145,7 @@ def test_the_watch_sees_what_it_is_there_for(tmp_path: Path, watch: Watch) -> No
         assert watch.found, number
 
 
+@pytest.mark.slow
 def test_the_window_leaves_all_work_on_files_and_pictures_to_others(
     qtbot: Any,
     open_window: Callable[..., Explorer],

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
@@ -35,11 +36,12 @@ def on_screen(widget: QWidget) -> bool:
     return widget.isVisible() and not widget.visibleRegion().isEmpty()
 
 
+@pytest.mark.slow
 def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
-    docks = explorer.docks
-    for dock in docks:
-        window.raise_dock(dock.name)
+    for name, host in explorer.hosts.items():
+        window.raise_dock(name)
+        dock = host.dock
         QApplication.processEvents()
         wait_idle(qtbot, explorer)
         window.toolbar.setFocus()
@@ -59,7 +61,7 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
             assert window._ring.isVisible()
             assert window._ring.around is here
         assert {each.objectName() for each in visited} == {each.objectName() for each in expected}
-        hidden = [other for other in docks if other is not dock]
+        hidden = [other.dock for other in explorer.hosts.values() if other.is_made and other is not host]
         assert not any(other.isAncestorOf(each) for other in hidden for each in visited)
         qtbot.keyClick(window.focusWidget(), TAB, SHIFT)
         assert window.focusWidget() is visited[-1]

@@ -138,6 +138,7 @@ def ours() -> dict[int, Any]:
     return {id(each): each for each in gc.get_objects() if str(type(each).__module__).startswith("texlab.")}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("imported")
 def test_what_comes_and_goes_leaves_no_object_and_a_closed_window_none(
     qtbot: Any, open_window: Callable[..., Explorer], texture: Path

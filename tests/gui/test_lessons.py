@@ -245,6 +245,7 @@ def press(qtbot: Any, window: Any, key: Qt.Key, modifier: Any = Qt.KeyboardModif
     qtbot.keyClick(window.focusWidget() or window, key, modifier)
 
 
+@pytest.mark.slow
 def test_from_the_first_start_the_bundled_lesson_is_given_with_keys_alone(
     qtbot: Any, qapp: Any, open_new: Callable[..., Explorer], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,6 +30,7 @@ def place(widget: Any, root: Any) -> QRect:
     return QRect(widget.mapTo(root, QPoint()), widget.size())
 
 
+@pytest.mark.slow
 def test_no_readout_hides_what_it_is_about_nor_outlives_it(qtbot: Any, explorer: Explorer) -> None:
     window = explorer.window
     seen = []

@@ -74,6 +74,7 @@ def teaching(explorer: Any) -> Any:
     explorer.window.actions_by_name["layout-explore"].trigger()
 
 
+@pytest.mark.slow
 def test_letters_of_every_tab_at_every_size(teaching: Any, qtbot: Any) -> None:
     window = teaching.window
     tabs = [name for name in window.docks if name not in SIDES]
@@ -299,6 +300,7 @@ def check_full_screen_and_back(teaching: Any, qtbot: Any) -> None:
     assert not window.menuBar().isHidden()
 
 
+@pytest.mark.slow
 def test_what_the_keys_of_teach_do(teaching: Any, qtbot: Any) -> None:
     # A window takes longer to open than all of these take.
     check_zoom_reaches_plots_and_mosaics(teaching, qtbot)

@@ -68,6 +68,7 @@ def whole(own_file: Path, seed: int) -> bool:
 # Windows.
 
 
+@pytest.mark.slow
 def test_two_windows_have_two_sessions_and_both_come_back(
     qtbot: Any, open_window: Callable[..., Explorer], texture: Path
 ) -> None:

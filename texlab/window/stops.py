@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import shiboken6
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QScrollArea, QTabBar, QWidget
+from PySide6.QtWidgets import QDockWidget, QScrollArea, QTabBar, QWidget
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from PySide6.QtGui import QPaintEvent
 
@@ -47,8 +47,16 @@ def stops(window: QWidget, order: Sequence[QWidget]) -> list[QWidget]:
         return next((k for k, part in enumerate(order) if part is widget or part.isAncestorOf(widget)), len(order))
 
     # Asking Qt for its chain of focus, widget by widget, makes Python take living objects for deleted ones.
-    found = [each for each in window.findChildren(QWidget) if is_stop(each) and each.window() is window]
-    return sorted(found, key=place)
+    return sorted(filter(is_stop, _shown_within(window)), key=place)
+
+
+def _shown_within(widget: QWidget) -> Iterator[QWidget]:
+    """Yield what a widget shows, also after scrolling, and nothing of tabs behind another one."""
+    for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
+        if child.isVisible() and not child.isWindow():
+            yield child
+            if not (isinstance(child, QDockWidget) and child.visibleRegion().isEmpty()):
+                yield from _shown_within(child)
 
 
 def next_stop(window: QWidget, order: Sequence[QWidget], *, forward: bool) -> QWidget | None:
