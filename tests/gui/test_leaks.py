@@ -17,7 +17,7 @@ from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication, QMainWindow, QMenu
 
 import texlab
-from tests.gui.conftest import ids, wait_idle
+from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.docks.recent import Recent, Same
 from texlab.runs import kept_points
 from texlab.runs.kept_points import KeptPoints
@@ -145,6 +145,8 @@ def test_what_comes_and_goes_leaves_no_object_and_a_closed_window_none(
 ) -> None:
     before = ours()
     explorer = open_window(str(texture), [("pixels", methods()["pixels"].params())])
+    # Tabs are made once and stay.
+    make_everything(explorer)
     box = explorer.workspace.exemplar._box
     if growth(qtbot, explorer, COMING_AND_GOING):
         # The first times may make what is kept for good.
