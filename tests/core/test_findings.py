@@ -16,6 +16,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, ParamError
+from texlab_core.figures.defaults import centre
 from texlab_core.findings import detectors as package
 from texlab_core.findings import registry
 from texlab_core.findings.diagnosis import findings_of
@@ -350,3 +351,22 @@ def test_a_batch_says_what_it_finds_and_counts_hints_apart() -> None:
     assert _kinds(("Look at this: it repeats.",)) == ["hinted"]
     assert _kinds(("It jumps.",)) == ["found"]
     assert _kinds(()) == []
+
+
+@pytest.mark.parametrize("texture", ["structured-scales", "structured-leaves"])
+def test_a_cut_is_seen_in_the_default_layout_and_none_where_there_is_none(texture: str) -> None:
+    exemplar = centre(texture)
+    params = methods()["de-bonet"].params()
+    job = Job(method="de-bonet", inputs={"exemplar": exemplar}, params=params, size=(256, 256), seed=5)
+    whole = run(job).image
+    cut = whole.copy()
+    cut[:, 100:] = np.roll(whole[:, 100:], 67, axis=0)
+    found = [
+        seen(Subject(image=each, exemplar=exemplar, method="de-bonet", cache=CACHE), params)
+        for each in (whole, cut)
+    ]
+    assert "cuts" not in found[0]
+    assert found[1]["cuts"].certainty == "look at"
+    # Either of the two lines that were made.
+    (place,) = found[1]["cuts"].where.regions[:1]
+    assert abs(place.left - 100) <= 2 or abs(place.top - 67) <= 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from texlab_core.findings.finding import Region, Where
+from texlab_core.findings.finding import LOOK_AT, Region, Where
 from texlab_core.findings.regions import along
 from texlab_core.findings.registry import Case, Detector, Seen, register
 from texlab_core.findings.remedies import multiply, put, say
@@ -11,12 +11,23 @@ from texlab_core.measures.limits import LIMITS
 from texlab_core.measures.registry import find_measure
 from texlab_core.measures.repeats import seams
 
+# A line that jumps this many times as far as any of the exemplar's is worth a look, whatever the labels taught.
+PLAIN = 2.0
+
+
+def _plain(case: Case) -> bool:
+    """Whether a line jumps far beyond the exemplar's own: only a hint, for no labels are of such results."""
+    cut, own = case.value("cuts"), case.value("own-cuts")
+    hint = case.rule is None or case.rule.certainty == LOOK_AT
+    return hint and cut is not None and own is not None and cut >= max(PLAIN * own, LIMITS["cuts"].bad)
+
 
 def _cuts(case: Case) -> Seen | None:
-    if not case.fires():
+    labelled = case.fires()
+    if not labelled and not _plain(case):
         return None
     # Where copies are laid side by side the cut is where they meet; elsewhere lines of the texture may jump more.
-    cut = largest_cut_between(case.subject)
+    cut = largest_cut_between(case.subject) if labelled else None
     if cut is None or cut.value < LIMITS["cuts"].good:
         cut = largest_cut(case.subject)
     if cut is None:
