@@ -293,3 +293,29 @@ def test_documents_from_before_are_filled_as_they_were() -> None:
         del old[name]
     back = EfrosLeungParams.from_json(old).to_json()
     assert (back["reach"], back["left"], back["top"], back["tau_scale"]) == (0, 0, 0, "absolute")
+
+
+def test_the_spread_of_a_whole_picture_is_not_measured_while_parts_are_filled(monkeypatch: Any) -> None:
+    """It takes as long as the picture is large, and nobody asks in between whether to stop."""
+    seen: list[tuple[int, int]] = []
+    usual = EfrosLeungParams.matching
+
+    def watched(self: EfrosLeungParams, exemplar: Any) -> Any:
+        seen.append(exemplar.size)
+        return usual(self, exemplar)
+
+    picture = deep(120, 160)
+    holes = mask_of(marked(picture.size, *HOLES))
+    inputs = {"exemplar": picture, "mask": holes}
+    job = Job(method="efros-leung", inputs=inputs, params=PARAMS, seed=3, size=picture.size)
+    before = run(job)
+    monkeypatch.setattr(EfrosLeungParams, "matching", watched)
+    again = run(job)
+    assert np.array_equal(again.image, before.image)
+    assert seen
+    assert all(height * width < 120 * 160 / 4 for height, width in seen)
+    # Another image is looked at once, however many parts are copied from it.
+    seen.clear()
+    other = deep(40, 48, seed=5)
+    fill(other, start=picture, mask=holes)
+    assert [size for size in seen if size == other.size].count(other.size) <= 2

@@ -118,7 +118,10 @@ def fill_by_parts(
     frame = yield from _laid_out(inputs, size, anchor)
     frame.total = int(np.count_nonzero(frame.unknown))
     boxes = yield from relay(parts_of(frame.unknown), lambda _: frame.step("dividing"))
-    first = matching_of(exemplar_of(inputs))
+    # Window and criterion alone: the spread of a whole picture, which tau goes by, would hold up a stop.
+    whole = exemplar_of(inputs)
+    first = matching_of(_image_input(whole.pixels[:1, :1], whole.name))
+    matching_of = _once_each(matching_of)
     reach, criterion = max(reach, first.window), first.criterion
     searched = 0
     for number, box in enumerate(boxes):
@@ -127,6 +130,18 @@ def fill_by_parts(
             inputs, matching_of, frame, box, PartStreams(streams, number), reach, stage
         )
     return (yield from _output(frame, criterion, boxes, searched))
+
+
+def _once_each(matching_of: MatchingOf) -> MatchingOf:
+    """Return a function that looks at each exemplar once: many parts may be copied from the same one."""
+    found: dict[str, Matching] = {}
+
+    def known(exemplar: ImageInput) -> Matching:
+        if exemplar.sha256 not in found:
+            found[exemplar.sha256] = matching_of(exemplar)
+        return found[exemplar.sha256]
+
+    return known
 
 
 def _laid_out(inputs: Inputs, size: tuple[int, int], anchor: Place) -> Generator[Step, None, Frame]:
