@@ -34,7 +34,7 @@ th[aria-sort=descending] button::after { content: " \\2193"; }
 img { display: block; max-width: 128px; image-rendering: pixelated; }
 small { color: GrayText; display: block; }
 .error { color: var(--bad); max-width: 30rem; }
-ul { margin: 0; padding-left: 1.1rem; max-width: 30rem; }
+ul { margin: 0; padding-left: 1.1rem; min-width: 16rem; max-width: 30rem; }
 [hidden] { display: none; }
 """
 
