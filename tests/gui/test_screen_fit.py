@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PySide6.QtCore import QRect
 
+from tests.gui.conftest import make_everything
 from texlab.app import start
 from texlab.storage.settings import Settings
 from texlab.style.theme import ThemeSource
@@ -75,6 +76,7 @@ def test_a_real_window_takes_the_screens_size(
 
 def test_no_tab_makes_the_window_wider_than_a_small_screen(explorer: Explorer) -> None:
     """1366 x 768 at 200 % leaves 681 pixels within the frame."""
+    make_everything(explorer)
     needed = {name: dock.minimumSizeHint().width() for name, dock in explorer.window.docks.items()}
     for name in needed.keys() - {"gallery", "parameters"}:
         assert needed["gallery"] + needed[name] + needed["parameters"] < 681 - 10, (name, needed[name])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,7 @@ from PySide6.QtWidgets import (
 )
 
 import texlab
-from tests.gui.conftest import ids, wait_idle
+from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.columns.history_popup import HistoryPopup
 from texlab.columns.numbers_popup import NumbersPopup
 from texlab.presets.dialog import PresetDialog
@@ -84,6 +85,7 @@ def nameless(root: QWidget) -> list[str]:
 
 
 def test_every_part_of_the_window_has_a_name(explorer: Explorer) -> None:
+    make_everything(explorer)
     explorer.presenter.show_scene(explorer.controller.scene())
     found = [*named(explorer.window)]
     assert len(found) > 200
@@ -130,6 +132,7 @@ def test_sliders_are_made_by_one_module() -> None:
 
 
 def test_every_slider_says_what_it_sets_wherever_it_stands(qtbot: Any, explorer: Explorer) -> None:
+    make_everything(explorer)
     sliders = explorer.window.findChildren(QSlider)
     assert len(sliders) >= 9
     for slider in sliders:
@@ -179,3 +182,22 @@ def test_a_slider_tells_what_changes_while_it_stands(qtbot: Any, range_: tuple[i
     unit[0] = "%"
     slider.tell()
     assert said(slider) == f"size: {range_[0]} %"
+
+
+def test_a_slider_keeps_nobody_alive(qtbot: Any) -> None:
+    class Owner:
+        def __init__(self) -> None:
+            self.slider = Slider("size", self.said)
+
+        def said(self, place: int) -> str:
+            return f"{place} px"
+
+    owner = Owner()
+    qtbot.addWidget(owner.slider)
+    slider, gone = owner.slider, weakref.ref(owner)
+    slider.setValue(3)
+    assert said(slider) == "size: 3 px"
+    del owner
+    assert gone() is None
+    slider.setValue(4)
+    assert said(slider) == "size: "

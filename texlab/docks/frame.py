@@ -136,6 +136,7 @@ class FramedDock(Dock):
         self.stage_button.hide()
         self.body = _Body()
         self.body.setObjectName(f"{self.name}-body")
+        self.body.setAccessibleName(self.title or self.name)
         self._stale = Label(STALE, self.body)
         self._stale.setObjectName(f"{self.name}-stale")
         self._stale.setAutoFillBackground(True)

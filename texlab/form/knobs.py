@@ -71,7 +71,7 @@ class NumberKnob(KnobWidget):
         self._scale = Scale.of(field)
         self._value: Any = field.default
         self.box: WholeBox | NumberBox = self._make_box(field)
-        self.slider = Slider(field.label, lambda _: self._said())
+        self.slider = Slider(field.label, self._said)
         self.slider.setObjectName(f"slider-{field.name}")
         self.slider.setRange(0, self._scale.positions)
         self.slider.setPageStep(max(1, self._scale.positions // 10))
@@ -122,7 +122,7 @@ class NumberKnob(KnobWidget):
         self._value = value
         self.slider.tell()
 
-    def _said(self) -> str:
+    def _said(self, _place: int) -> str:
         unit = f" {self._field.knob.unit}" if self._field.knob.unit else ""
         return f"{self.box.textFromValue(self._value)}{unit}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
@@ -28,12 +29,13 @@ class Readout(Label):
     parent
         Whose child it is.
     room
-        Returns the room, in the parent's coordinates, whenever a text is shown.
+        A method that returns the room, in the parent's coordinates, whenever a text is shown. Its object, which
+        owns this, is not kept alive by it.
     """
 
     def __init__(self, name: str, parent: QWidget, room: Callable[[], QRect]) -> None:
         super().__init__(parent=parent)
-        self._room = room
+        self._room = weakref.WeakMethod(room)
         self._again: Callable[[], str] | None = None
         self.setObjectName(name)
         self.setAccessibleName("Value under the cursor")
@@ -63,7 +65,8 @@ class Readout(Label):
         if not text:
             super().setText("")
             return
-        room = self._room()
+        find = self._room()
+        room = self.rect() if find is None else find()
         most = room.width() - 4 * MARGIN
         super().setText(self.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, most))
         self.adjustSize()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import weakref
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
@@ -21,7 +23,7 @@ class Slider(QSlider):
     title
         What it sets.
     says
-        Returns the value at a position, as people say it, with its unit.
+        Returns the value at a position, as people say it, with its unit; a method does not keep its object alive.
     parent
         The parent widget.
     """
@@ -29,7 +31,8 @@ class Slider(QSlider):
     def __init__(self, title: str, says: Callable[[int], str], parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.title = title
-        self._says = says
+        # Who owns a slider would otherwise own itself, and live on when it is let go.
+        self._says = weakref.WeakMethod(says) if inspect.ismethod(says) else lambda: says
         self.tell()
 
     def sliderChange(self, change: QAbstractSlider.SliderChange) -> None:
@@ -39,6 +42,7 @@ class Slider(QSlider):
 
     def tell(self) -> None:
         """Put the value into the accessible name; for values that change while the position stays."""
-        said = f"{self.title}: {self._says(self.value())}"
+        says = self._says()
+        said = f"{self.title}: {'' if says is None else says(self.value())}"
         if said != self.accessibleName():
             self.setAccessibleName(said)

@@ -33,7 +33,7 @@ class StepWords(QScrollArea):
         set_tip(self.reveal, "The answer to the question, once everybody has had a try")
         self.slider_label = Label("")
         self.slider_label.setObjectName("lessons-series-value")
-        self.slider = Slider("Value of the step", lambda _: self.slider_label.text())
+        self.slider = Slider("Value of the step", self._said)
         self.slider.setObjectName("lessons-series")
         self.slider.valueChanged.connect(self._slid)
         self._slider_row = QWidget()
@@ -74,6 +74,9 @@ class StepWords(QScrollArea):
             self.slider.setValue(series.values.index(own) if own in series.values else 0)
             self.slider.blockSignals(blocked)
             self._tell_value(series.parameter, own)
+
+    def _said(self, _place: int) -> str:
+        return self.slider_label.text()
 
     def _tell_value(self, parameter: str, value: Any) -> None:
         self.slider_label.setText(f"{parameter.replace('_', ' ')} {value}")
