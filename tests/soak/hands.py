@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 
 NONE = Qt.KeyboardModifier.NoModifier
 BUTTONS = Qt.MouseButton
+MODIFIERS = (
+    (Qt.KeyboardModifier.ControlModifier, Qt.Key.Key_Control),
+    (Qt.KeyboardModifier.AltModifier, Qt.Key.Key_Alt),
+    (Qt.KeyboardModifier.ShiftModifier, Qt.Key.Key_Shift),
+)
 KEYS = [
     *("Tab", "Return", "Space", "Escape", "Left", "Right", "Up", "Down", "PageUp", "PageDown", "Home", "End"),
     *("Delete", "Backspace", "Plus", "Minus", "Period", *"0123579ABDFGLTWXZ", "F1", "F4", "F5"),
@@ -148,11 +153,20 @@ class Hands:
 
     def key(self, front: QWidget, key: Qt.Key, held: Qt.KeyboardModifier = NONE) -> None:
         handle = front.windowHandle()
-        if handle is not None:
-            address = shiboken6.getCppPointer(handle)[0]
+        if handle is None:
+            return
+        address = shiboken6.getCppPointer(handle)[0]
+        # A menu that is about to go goes now: keys with others held are several events for one window.
+        QApplication.processEvents()
+        for modifier, name in MODIFIERS:
+            if modifier & held and is_there(address):
+                QTest.keyPress(handle, name)
+                if is_there(address):
+                    QTest.keyRelease(handle, name)
+        if is_there(address):
             QTest.keyPress(handle, key, held)
-            if is_there(address):
-                QTest.keyRelease(handle, key, held)
+        if is_there(address):
+            QTest.keyRelease(handle, key, held)
 
     # What hands do.
 
