@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetricsF, QPaintDevice, QPaintEngine, QPainter
-from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QGraphicsView, QLabel, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QAbstractScrollArea,
+    QApplication,
+    QGraphicsView,
+    QHeaderView,
+    QLabel,
+    QTabBar,
+    QToolButton,
+    QWidget,
+)
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEngineState, QTextItem
@@ -65,7 +75,11 @@ class _Engine(QPaintEngine):
             return
         capitals = QFontMetricsF(item.font()).capHeight()
         moved = self.painter().deviceTransform()
-        place = moved.mapRect(QRectF(at.x(), at.y() - capitals, item.width(), capitals))
+        text = item.text()
+        # A space at the end of a line is not seen.
+        blank = len(text) - len(text.rstrip())
+        width = item.width() - blank * QFontMetricsF(item.font()).horizontalAdvance(" ")
+        place = moved.mapRect(QRectF(at.x(), at.y() - capitals, width, capitals))
         # Turned text is as high as it is wide on the screen.
         scale = (moved.m11() ** 2 + moved.m12() ** 2) ** 0.5
         self._found.append(Painted(item.text(), capitals * scale, place, self._painting[-1]))
@@ -128,8 +142,14 @@ def room_of(widget: QWidget, window: QWidget) -> QRectF:
     while at is not None:
         area = at.parentWidget()
         if isinstance(area, QAbstractScrollArea) and not isinstance(area, QGraphicsView) and area.viewport() is at:
-            for way, bar in enumerate((area.horizontalScrollBar(), area.verticalScrollBar())):
+            # The heads of a table go with the table.
+            table = area.parentWidget()
+            bars = table if isinstance(area, QHeaderView) and isinstance(table, QAbstractItemView) else area
+            for way, bar in enumerate((bars.horizontalScrollBar(), bars.verticalScrollBar())):
                 scrolls[way] = scrolls[way] or bar.maximum() > 0
+        if isinstance(at, QTabBar) and any(each.isVisible() for each in at.findChildren(QToolButton)):
+            # Its arrows go to the tabs that have no room.
+            scrolls[0] = True
         corner = at.mapTo(window, QPoint(0, 0))
         own = corner.x(), corner.y(), corner.x() + at.width(), corner.y() + at.height()
         for side, value in enumerate(own):

@@ -45,8 +45,8 @@ def test_no_label_covers_another_or_leaves_the_plot(given_labels: list[Label]) -
 def test_a_label_with_room_stands_where_it_is_wanted() -> None:
     assert place_labels([Label(50, 100, 40, 10)], ROOM) == [(50, 90)]
     assert place_labels([Label(390, 100, 40, 10)], ROOM) == [(360, 90)]
-    # What is larger than the plot begins at its corner.
-    assert place_labels([Label(50, 100, 900, 300)], ROOM) == [(0, 0)]
+    # What is larger than the plot would be cut.
+    assert place_labels([Label(50, 100, 900, 10), Label(50, 100, 10, 300)], ROOM) == [None, None]
 
 
 def test_labels_of_one_point_stand_around_it() -> None:

@@ -17,6 +17,7 @@ from texlab.window.chalk import INK, Chalk
 from texlab.window.layouts import SIDES
 
 SCREENS = [(1280, 720), (1920, 1080), (3840, 2160)]
+LARGER = (1.0, 1.5, 2.0)
 
 
 @pytest.mark.parametrize("height", [300, 720, 1080, 2160])
@@ -78,19 +79,24 @@ def teaching(explorer: Any) -> Any:
 def test_letters_of_every_tab_at_every_size(teaching: Any, qtbot: Any) -> None:
     window = teaching.window
     tabs = [name for name in window.docks if name not in SIDES]
-    for turn, size in enumerate(SCREENS):
-        window.resize(*size)
-        qtbot.waitUntil(lambda: capitals(window.font()) >= window.height() / 40)
-        # Sizes take turns: every tab is seen at one of them.
-        for name in tabs[turn :: len(SCREENS)]:
-            window.raise_dock(name)
-            wait_idle(qtbot, teaching)
-            assert [other for other, dock in window.docks.items() if dock.isVisible()] == [name]
-            assert (window.width(), window.height()) == size, name
-            found = painted(window)
-            assert len(found) > 10
-            assert too_small(window, found) == [], (name, size)
-            assert cut(window, found) == [], (name, size)
+    seen_at: set[tuple[str, tuple[int, int]]] = set()
+    for row, size in enumerate(SCREENS):
+        for turn, zoom in enumerate(LARGER):
+            window.layouts.set_zoom(zoom)
+            window.resize(*size)
+            qtbot.waitUntil(lambda zoom=zoom: capitals(window.font()) >= zoom * window.height() / 40)
+            # Every tab is seen at every size; the zooms take turns, and each tab has all of them.
+            for name in tabs[(turn + row) % len(LARGER) :: len(LARGER)]:
+                window.raise_dock(name)
+                wait_idle(qtbot, teaching)
+                assert [other for other, dock in window.docks.items() if dock.isVisible()] == [name]
+                assert (window.width(), window.height()) == size, (name, zoom)
+                found = painted(window)
+                assert len(found) > 5
+                assert too_small(window, found) == [], (name, size, zoom)
+                assert cut(window, found) == [], (name, size, zoom)
+                seen_at.add((name, size))
+    assert len(seen_at) == len(tabs) * len(SCREENS)
 
 
 def check_zoom_reaches_plots_and_mosaics(teaching: Any, qtbot: Any) -> None:

@@ -97,6 +97,7 @@ class Foot(QWidget):
             across = policy.Preferred if words == "beside" else policy.Fixed
             each.setSizePolicy(across, policy.Minimum if words == "beside" else policy.Fixed)
         self.line.set_lines(self._lines)
+        self.line.setVisible(True)
         self._take_room()
         self._fit()
 
@@ -139,14 +140,30 @@ class Foot(QWidget):
 
     def _fit(self) -> None:
         """Show whole figures only, the first ones."""
+        if self._words == "beside":
+            self._fit_beside()
+            return
         room = self.width() - 2 * MARGIN
         if self._words == "line":
             room -= self.width_of(LINE)
         for place, label in enumerate(self.figures):
             has = place < len(self._shown)
-            if self._words != "beside" and has:
+            if has:
                 room -= self.width_of(self._shown[place].text) + (GAP if place else 0)
             label.setVisible(has and (room >= 0 or place == 0))
+
+    def _fit_beside(self) -> None:
+        """Show the first figures that stand whole under each other, and as many lines as are left."""
+        width, room = self.width() - 2 * MARGIN, self.height()
+        for place, label in enumerate(self.figures):
+            needed = 0
+            if place < len(self._shown):
+                needed = max(label.heightForWidth(width), label.sizeHint().height()) + (GAP if place else 0)
+            room -= needed
+            label.setVisible(needed > 0 and room >= 0)
+        lines = int((room - 2) // self.line.fontMetrics().lineSpacing())
+        self.line.set_lines(min(max(lines, 0), LINES_BESIDE))
+        self.line.setVisible(lines > 0)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Show what there is room for."""

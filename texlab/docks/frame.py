@@ -26,6 +26,7 @@ from texlab.widgets.number_box import WholeBox
 from texlab.widgets.picture_handle import PictureHandle
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import MARGIN, Readout
+from texlab.widgets.scroll_room import ScrollRoom
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -157,7 +158,9 @@ class FramedDock(Dock):
         pages = QWidget(self)
         self._stack = QStackedLayout(pages)
         self._stack.addWidget(self._message)
-        self._stack.addWidget(self.body)
+        self._room = ScrollRoom(self.body, f"{self.name}-room")
+        self._room.setAccessibleName(self.title)
+        self._stack.addWidget(self._room)
         pages.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         # Without controls the value under the cursor has a line of its own.
         self._readout: Readout | None = None
@@ -265,7 +268,7 @@ class FramedDock(Dock):
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""
-        self._stack.setCurrentWidget(self.body)
+        self._stack.setCurrentWidget(self._room)
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

@@ -35,19 +35,21 @@ class Label:
 
 
 def place_labels(labels: Sequence[Label], room: tuple[float, float]) -> list[tuple[float, float] | None]:
-    """Return left and top for each label, None for one that has no place without covering one before it.
+    """Return left and top for each label, None where it is too large or would cover one before it.
 
     Parameters
     ----------
     labels
         The most important ones first.
     room
-        Width and height of the plot; a label that is larger than that begins at its left or upper side.
+        Width and height of the plot.
     """
     taken: list[tuple[float, float, float, float]] = []
     found: list[tuple[float, float] | None] = []
     for label in labels:
-        place = next((each for each in _places(label, room) if not _covers(each, label, taken)), None)
+        fits = label.width <= room[0] and label.height <= room[1]
+        places = _places(label, room) if fits else iter(())
+        place = next((each for each in places if not _covers(each, label, taken)), None)
         found.append(place)
         if place is not None:
             taken.append((*place, place[0] + label.width, place[1] + label.height))
@@ -68,8 +70,8 @@ def _places(label: Label, room: tuple[float, float]) -> Iterator[tuple[float, fl
 
 
 def _inside(place: tuple[float, float], label: Label, room: tuple[float, float]) -> tuple[float, float]:
-    left = min(max(place[0], 0.0), max(room[0] - label.width, 0.0))
-    top = min(max(place[1], 0.0), max(room[1] - label.height, 0.0))
+    left = min(max(place[0], 0.0), room[0] - label.width)
+    top = min(max(place[1], 0.0), room[1] - label.height)
     return left, top
 
 

@@ -30,6 +30,7 @@ pg = configure_pyqtgraph()
 Role = Literal["exemplar", "result", "third", "good", "warning", "error", "muted", "text", "accent"]
 Line = Literal["solid", "dash", "dot"]
 ROOM_FOR_LABELS = 170
+LEAST = (60, 50)
 LINES = {"solid": Qt.PenStyle.SolidLine, "dash": Qt.PenStyle.DashLine, "dot": Qt.PenStyle.DotLine}
 # Colours and line styles for any number of series: no two of the first nine look alike without colour either.
 SERIES: tuple[tuple[Role, Line], ...] = (
@@ -77,7 +78,7 @@ class Plot(QWidget):
         self.graph.setObjectName(f"{name}-graph")
         self.graph.setAccessibleName(label)
         self.graph.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.graph.setMinimumSize(60, 50)
+        self.graph.setMinimumSize(*LEAST)
         # A view and two axes: pyqtgraph's PlotItem brings seven menus and a hidden form with it.
         grid = pg.GraphicsLayout()
         grid.setContentsMargins(0, 4, 6, 0)
@@ -107,6 +108,11 @@ class Plot(QWidget):
     def sizeHint(self) -> QSize:
         """Ask for little: docks are low."""
         return QSize(200, 120)
+
+    def minimumSizeHint(self) -> QSize:
+        """Return room for an axis with a few numbers."""
+        scale = text_scale(self)
+        return QSize(int(LEAST[0] * scale), int(LEAST[1] * scale))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Leave the names of the axes out where there is no room for them."""

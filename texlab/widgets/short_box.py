@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox, QSizePolicy, QStyle, QStyleOptionComboBox, QStylePainter
 
+from texlab.style.text_size import is_teaching, whole_words
+
 if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEvent
     from PySide6.QtWidgets import QWidget
@@ -40,7 +42,10 @@ class ShortBox(QComboBox):
             QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, self
         )
         room = field.width() - 4
-        option.currentText = self.fontMetrics().elidedText(self.label, Qt.TextElideMode.ElideRight, room)
+        metrics = self.fontMetrics()
+        # Nobody in the back row can do anything with half a word.
+        fit = whole_words(self.label, metrics, room) if is_teaching() else None
+        option.currentText = fit or metrics.elidedText(self.label, Qt.TextElideMode.ElideRight, room)
         painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
         painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
@@ -44,6 +44,10 @@ class Found:
     exemplar: Picture | None
 
 
+# Between a word and the sides of the list.
+SLACK = 10
+
+
 class FindingsDock(FramedDock):
     """Lists what is wrong with the chosen column's result."""
 
@@ -74,6 +78,8 @@ class FindingsDock(FramedDock):
         set_tip(self.list, "What is wrong, certain things first; choose one to see where it is")
         add_copying(self.list, lambda: list_text(self.list))
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.list.setWordWrap(True)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.list.currentRowChanged.connect(self._choose)
         self.text = Label("")
         self.text.setObjectName("findings-text")
@@ -139,7 +145,22 @@ class FindingsDock(FramedDock):
         ids = [each.id for each in answer.findings]
         self.list.setCurrentRow(ids.index(kept) if kept in ids else 0)
         self.list.blockSignals(blocked)
+        self._give_width()
         self._show_chosen()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the size of the text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._give_width()
+
+    def _give_width(self) -> None:
+        """Let no word of the list be broken."""
+        metrics = self.list.fontMetrics()
+        headings = (self.list.item(row).text() for row in range(self.list.count()))
+        widest = max((metrics.horizontalAdvance(word) for text in headings for word in text.split()), default=0)
+        bar = self.list.verticalScrollBar().sizeHint().width()
+        self.list.setMinimumWidth(widest + bar + 2 * self.list.frameWidth() + SLACK)
 
     @property
     def chosen(self) -> Finding | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QRect, QSize, Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -46,6 +46,9 @@ if TYPE_CHECKING:
     from texlab_core.documents.lessons import Lesson, LessonStep
 
 SENTENCE = "A step of my own."
+# Around the titles of the list, in pixels.
+SLACK, ROW_MARGIN = 12, 4
+FAR = 100_000
 
 
 class LessonsDock(FramedDock):
@@ -88,6 +91,8 @@ class LessonsDock(FramedDock):
         self.list.setAccessibleName("Lessons")
         self.list.setHeaderHidden(True)
         self.list.setRootIsDecorated(False)
+        self.list.setWordWrap(True)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.list.itemClicked.connect(self._clicked)
         self.list.itemActivated.connect(self._clicked)
         self.edit_button = QPushButton("Edit")
@@ -227,6 +232,20 @@ class LessonsDock(FramedDock):
         bar = self.list.verticalScrollBar().sizeHint().width()
         wanted = self.list.sizeHintForColumn(0) + bar + 2 * self.list.frameWidth()
         self.list.setMinimumWidth(min(wanted, self.width() // 2))
+        self._give_lines()
+
+    def _give_lines(self) -> None:
+        """Let titles take as many lines as they need in the width that there is."""
+        metrics = self.list.fontMetrics()
+        room = self.list.viewport().width() - self.list.indentation() - SLACK
+        if not self.list.verticalScrollBar().isVisible():
+            # It may come when titles take more lines.
+            room -= self.list.verticalScrollBar().sizeHint().width()
+        flags = int(Qt.TextFlag.TextWordWrap.value)
+        items = self.list.findItems("", Qt.MatchFlag.MatchContains | Qt.MatchFlag.MatchRecursive)
+        for item in items:
+            needed = metrics.boundingRect(QRect(0, 0, max(room, 1), FAR), flags, item.text(0))
+            item.setSizeHint(0, QSize(0, needed.height() + ROW_MARGIN))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Give the list its share of the room."""
