@@ -7,14 +7,16 @@ from typing import Any
 import pytest
 from painted_text import cut, painted, too_small
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QAction, QColor, QFont, QFontMetricsF
+from PySide6.QtWidgets import QMainWindow, QWidget
 
 from tests.gui.conftest import ids, wait_idle
 from texlab.style.text_size import ZOOMS, capitals_of, next_zoom, set_least, smaller, teach_points
+from texlab.style.theme import LIGHT, set_text_size
 from texlab.widgets.plots import Plot
 from texlab.window.chalk import INK, Chalk
 from texlab.window.layouts import SIDES
+from texlab.window.lesson_bar import LessonBar
 
 SCREENS = [(1280, 720), (1920, 1080), (3840, 2160)]
 LARGER = (1.0, 1.5, 2.0)
@@ -57,6 +59,26 @@ def test_small_text_is_not_small_in_teach() -> None:
         assert smaller(20.0, 0.8) == 18.0
     finally:
         set_least(0.0)
+
+
+def test_the_sentence_of_a_lesson_is_the_largest_text_at_every_size(qtbot: Any, qapp: Any) -> None:
+    window, before = QMainWindow(), qapp.font().pointSizeF()
+    qtbot.addWidget(window)
+    names = ("lesson-back", "lesson-next", "lesson-leave")
+    bar = LessonBar({name: QAction(name, window) for name in names})
+    window.setCentralWidget(bar)
+    window.show()
+    try:
+        # There and back: a size that was given once must not stay.
+        for points, teaches in ((9.0, False), (30.0, True), (60.0, True), (9.0, False)):
+            set_least(points if teaches else 0.0)
+            set_text_size(qapp, points, LIGHT)
+            bar.show()
+            assert bar.count.font().pointSizeF() == points
+            assert bar.sentence.font().pointSizeF() == pytest.approx(points * (1.2 if teaches else 1.6), abs=0.06)
+    finally:
+        set_least(0.0)
+        set_text_size(qapp, before, LIGHT)
 
 
 def seen(widget: QWidget) -> bool:

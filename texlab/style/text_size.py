@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 # Capitals are read from the back row when they are this part of the picture's height.
 CAPITALS = 1 / 40
 ZOOMS = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
+# How many times as large as other text the sentence of a lesson is: when teaching, else.
+SENTENCE = (1.2, 1.6)
 # Sizes in pixels are made for lines of this height.
 USUAL_LINE = 15.0
 # Text that is smaller elsewhere is not smaller than this; it is that of Teach while one teaches.
@@ -74,6 +76,11 @@ def set_least(points: float) -> None:
 def is_teaching() -> bool:
     """Return whether text has the size that is read from the back row."""
     return _least[0] > 0
+
+
+def sentence_points(points: float) -> float:
+    """Return the size of a lesson's sentence beside text of this size: in Teach all text is large already."""
+    return points * (SENTENCE[0] if is_teaching() else SENTENCE[1])
 
 
 def smaller(points: float, factor: float, least: float = 6.5) -> float:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 
+from texlab.style.text_size import sentence_points
+
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QApplication
 
@@ -175,6 +177,7 @@ def stylesheet(theme: Theme, points: float) -> str:
     QLabel[role="error"] {{ color: {theme.error}; }}
     QLabel[role="warning"] {{ color: {theme.warning}; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
+    QLabel[role="sentence"] {{ font-size: {sentence_points(points):.1f}pt; }}
     QLabel[role="figure"] {{ font-weight: 600; font-size: {points * 1.15:.1f}pt; }}
     QDialog#command-palette {{ border: 1px solid {theme.accent}; background: {theme.window}; }}
     QListWidget, QTreeWidget, QScrollArea {{ border: none; }}

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
-from texlab.style.text_size import is_teaching
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
@@ -16,10 +15,6 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QAction
 
     from texlab.state.lesson_scene import LessonScene
-
-SENTENCE_FACTOR = 1.6
-# All text is large then.
-TEACH_FACTOR = 1.2
 
 
 class LessonBar(QWidget):
@@ -33,6 +28,8 @@ class LessonBar(QWidget):
         self.count.setObjectName("lesson-count")
         self.sentence = Label("")
         self.sentence.setObjectName("lesson-sentence")
+        # A font of its own would be taken back by the style sheet, which gives it its size.
+        self.sentence.setProperty("role", "sentence")
         self.sentence.setWordWrap(True)
         self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
@@ -50,19 +47,7 @@ class LessonBar(QWidget):
         line.addWidget(self.sentence, 1)
         line.addWidget(self.readiness)
         line.addWidget(_button(actions["lesson-leave"]))
-        self._size_sentence()
         self.hide()
-
-    def changeEvent(self, event: QEvent) -> None:
-        """Let the sentence follow the size of the text."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self._size_sentence()
-
-    def _size_sentence(self) -> None:
-        font = self.font()
-        font.setPointSizeF(font.pointSizeF() * (TEACH_FACTOR if is_teaching() else SENTENCE_FACTOR))
-        self.sentence.setFont(font)
 
     def show_lesson(self, lesson: LessonScene) -> None:
         """Show a step, or nothing when no lesson is given."""
