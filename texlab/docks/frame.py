@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 from texlab.docks.base import Dock
 from texlab.docks.recent import Recent, Same
 from texlab.state.intentions import ShowStage, TakePicture
+from texlab.style.text_size import is_teaching
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
@@ -96,8 +97,9 @@ class _Body(QWidget):
     """What a tab shows; on a narrow screen it is squeezed, and the window fits all the same."""
 
     def minimumSizeHint(self) -> QSize:
-        """Return what the parts need, but no more than a small screen has."""
-        return super().minimumSizeHint().boundedTo(QSize(MOST_NEEDED, QWIDGETSIZE_MAX))
+        """Return what the parts need, but no more than a small screen has; large text is scrolled instead."""
+        needed = super().minimumSizeHint()
+        return needed if is_teaching() else needed.boundedTo(QSize(MOST_NEEDED, QWIDGETSIZE_MAX))
 
 
 class FramedDock(Dock):
