@@ -18,11 +18,21 @@ SLACK = 4
 GAP = 1
 
 
-class _Headed(QWidget):
-    def __init__(self, title: Label, view: QWidget) -> None:
+class Headed(QWidget):
+    """Has a heading over a view, and room for all of both.
+
+    Parameters
+    ----------
+    title
+        The heading, which takes several lines where it is wider than the view.
+    views
+        What is under it, side by side.
+    """
+
+    def __init__(self, title: Label, *views: QWidget) -> None:
         super().__init__()
         self._title = title
-        self._view = view
+        self._views = views
         self._lines = 0
 
     def minimumSizeHint(self) -> QSize:
@@ -31,9 +41,9 @@ class _Headed(QWidget):
         widest = max((metrics.horizontalAdvance(word) for word in self._title.text().split()), default=0)
         needed = super().minimumSizeHint().expandedTo(QSize(widest + SLACK, 0))
         if is_teaching():
-            view = self._view.minimumSizeHint().expandedTo(self._view.minimumSize())
+            least = (each.minimumSizeHint().expandedTo(each.minimumSize()).height() for each in self._views)
             lines = self._title.heightForWidth(max(self.width(), needed.width()))
-            needed = needed.expandedTo(QSize(0, lines + GAP + view.height()))
+            needed = needed.expandedTo(QSize(0, lines + GAP + max(least, default=0)))
         return needed
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -49,7 +59,7 @@ def headed(title: Label, view: QWidget) -> QWidget:
     """Put a heading over a view; it takes more lines where it is wider than the view."""
     title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
     title.setWordWrap(True)
-    part = _Headed(title, view)
+    part = Headed(title, view)
     column = QVBoxLayout(part)
     column.setContentsMargins(0, 0, 0, 0)
     column.setSpacing(GAP)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy
+from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QStyle
 
 from texlab.style.text_size import is_teaching
 
 if TYPE_CHECKING:
+    from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
 # Up to these parts of the window's width and height a tab has the room that it asks for, when one teaches.
@@ -23,7 +24,6 @@ class ScrollRoom(QScrollArea):
         super().__init__()
         self.setObjectName(name)
         self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setWidgetResizable(True)
         # The parts inside have the keyboard.
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -48,8 +48,30 @@ class ScrollRoom(QScrollArea):
         window = self.window().size()
         return needed.boundedTo(QSize(int(MOST[0] * window.width()), int(MOST[1] * window.height())))
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Give what is inside the room."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        # Qt's own way would give words that take several lines the height that they like best.
+        inner = self.widget()
+        if inner is None:
+            return
+        room = self.maximumViewportSize()
+        if not is_teaching():
+            inner.resize(room)
+            return
+        needed = inner.minimumSizeHint().expandedTo(inner.minimumSize())
+        bar = self.style().pixelMetric(QStyle.PixelMetric.PM_ScrollBarExtent)
+        down = needed.height() > room.height()
+        across = needed.width() > room.width() - bar * down
+        down = down or needed.height() > room.height() - bar * across
+        inner.resize(needed.expandedTo(QSize(room.width() - bar * down, room.height() - bar * across)))
+
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Ask for other room when what is inside does."""
         if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
             self.updateGeometry()
+            self._fit()
         return super().eventFilter(watched, event)

@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QImage, QKeyEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import HISTOGRAM_TABLES, paint
+from texlab.style.text_size import text_scale
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import set_tip
@@ -125,8 +126,9 @@ class JointView(OwnKeys, QWidget):
         return QSize(180, 180)
 
     def minimumSizeHint(self) -> QSize:
-        """Return what cells need."""
-        return QSize(90, 80)
+        """Return what cells and a few numbers need."""
+        scale = text_scale(self)
+        return QSize(int(90 * scale), int(80 * scale))
 
     # Where things are.
 

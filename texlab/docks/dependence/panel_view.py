@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from texlab.docks.dependence.joint_view import JointView
+from texlab.widgets.headed import Headed
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 
@@ -22,22 +23,21 @@ TIP = (
 )
 
 
-class PanelView(QWidget):
+class PanelView(Headed):
     """Shows a panel; ``pinned(column, row, column of the picture)`` when a pixel is clicked."""
 
     pinned = Signal(int, int, int)
 
     def __init__(self, name: str, label: str, link: ViewLink) -> None:
-        super().__init__()
-        self.setAccessibleName(f"Dependence in the {label}")
-        self.panel: Panel | None = None
         self.title = Label("")
+        self.joint = JointView(f"{name}-histogram", f"Histogram of the {label}")
+        self.pane = PicturePane(f"{name}-picture", f"Pixels of the {label} in the chosen cells", link)
+        super().__init__(self.title, self.joint, self.pane)
+        self.panel: Panel | None = None
         self.title.setObjectName(f"{name}-title")
         # The longest title must not widen the window.
         self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
         self.title.setWordWrap(True)
-        self.joint = JointView(f"{name}-histogram", f"Histogram of the {label}")
-        self.pane = PicturePane(f"{name}-picture", f"Pixels of the {label} in the chosen cells", link)
         self.pane.hovered.connect(self._point)
         self.pane.clicked.connect(self._pin)
         line = QHBoxLayout()
