@@ -67,7 +67,15 @@ class ScrollRoom(QScrollArea):
         down = needed.height() > room.height()
         across = needed.width() > room.width() - bar * down
         down = down or needed.height() > room.height() - bar * across
-        inner.resize(needed.expandedTo(QSize(room.width() - bar * down, room.height() - bar * across)))
+        room -= QSize(bar * down, bar * across)
+        layout = inner.layout()
+        if layout is not None and layout.hasHeightForWidth():
+            # Words take more lines than the least that they say they need.
+            lines = layout.minimumHeightForWidth(max(needed.width(), room.width() - bar * (not down)))
+            needed = needed.expandedTo(QSize(0, lines))
+        if needed.height() > room.height() and not down:
+            room -= QSize(bar, 0)
+        inner.resize(needed.expandedTo(room))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Ask for other room when what is inside does."""

@@ -245,7 +245,8 @@ class LessonsDock(FramedDock):
         items = self.list.findItems("", Qt.MatchFlag.MatchContains | Qt.MatchFlag.MatchRecursive)
         for item in items:
             needed = metrics.boundingRect(QRect(0, 0, max(room, 1), FAR), flags, item.text(0))
-            item.setSizeHint(0, QSize(0, needed.height() + ROW_MARGIN))
+            natural = metrics.horizontalAdvance(item.text(0)) + SLACK
+            item.setSizeHint(0, QSize(natural, needed.height() + ROW_MARGIN))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Give the list its share of the room."""
