@@ -31,6 +31,8 @@ class Headed(QWidget):
 
     def __init__(self, title: Label, *views: QWidget) -> None:
         super().__init__()
+        # The heading changes with what is shown; the view has a name of its own from the beginning.
+        self.setAccessibleName(next(filter(None, (each.accessibleName() for each in views)), title.text()))
         self._title = title
         self._views = views
         self._lines = 0
