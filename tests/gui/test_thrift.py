@@ -6,10 +6,13 @@ import ctypes
 import sys
 from typing import Any
 
+import numpy as np
 import pytest
 
 from texlab.app import memory
 from texlab.app.memory import STEP_BYTES, Thrift, give_back, memory_bytes
+from texlab_core.transforms import filters
+from texlab_core.work.tasks import finish
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only this C library keeps what was freed")
@@ -69,3 +72,19 @@ def test_where_the_size_is_not_known_nothing_is_done(monkeypatch: pytest.MonkeyP
     for _ in range(3):
         thrift.look(idle=True)
     assert thrift._worker is None
+
+
+def test_large_filters_are_let_go_of_the_oldest_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    cache = filters.ArrayCache(10**9)
+    monkeypatch.setattr(filters, "_CACHE", cache)
+    monkeypatch.setattr(memory, "FILTERS_BYTES", 1000)
+
+    def make(count: int) -> Any:
+        yield 1
+        return np.zeros(count, np.uint8)
+
+    for count in (900, 300, 200):
+        finish(cache.get((count,), lambda count=count: make(count)))
+    give_back()
+    assert list(cache._arrays) == [(300,), (200,)]
+    assert cache._bytes == 500

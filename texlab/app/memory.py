@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Less than this is not worth the milliseconds in which nobody else gets memory.
 STEP_BYTES = 24 * 2**20
+# Filters of pictures of ordinary size are worth keeping at rest too.
+FILTERS_BYTES = 24 * 2**20
 
 
 def memory_bytes() -> int | None:
@@ -34,7 +36,10 @@ def memory_text() -> str:
 
 
 def give_back() -> None:
-    """Give the system what was freed, which glibc keeps in pieces between what is in use; elsewhere do nothing."""
+    """Let go of large filters, and give the system what was freed, which glibc keeps in pieces."""
+    from texlab_core.transforms.filters import shrink
+
+    shrink(FILTERS_BYTES)
     if sys.platform == "linux":
         try:
             ctypes.CDLL(None).malloc_trim(0)

@@ -69,6 +69,12 @@ class ArrayCache:
                 self._bytes -= self._arrays.popitem(last=False)[1].nbytes
         return kept
 
+    def shrink(self, nbytes: int) -> None:
+        """Drop the arrays that were not used for longest until the others take no more than this."""
+        with self._lock:
+            while self._bytes > nbytes:
+                self._bytes -= self._arrays.popitem(last=False)[1].nbytes
+
     def clear(self) -> None:
         """Drop all arrays."""
         with self._lock:
@@ -77,6 +83,11 @@ class ArrayCache:
 
 
 _CACHE = ArrayCache(256 * 2**20)
+
+
+def shrink(nbytes: int) -> None:
+    """Let go of responses, which are made again when they are needed, until they take no more than this."""
+    _CACHE.shrink(nbytes)
 
 
 def highpass(size: Size, dtype: np.dtype[Any]) -> Task[Mask]:
