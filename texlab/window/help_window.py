@@ -345,7 +345,7 @@ def _report_file(name: str) -> Path:
     if isinstance(found, Path):
         return found
     copy = Path(tempfile.mkdtemp(prefix="texlab-")) / f"{name}.html"
-    write_whole(copy, found.read_bytes())
+    write_whole(copy, resource(f"help/reports/{name}.html").read_bytes())
     return copy
 
 

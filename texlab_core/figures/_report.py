@@ -17,6 +17,7 @@ from texlab_core.batch.page import page_of
 from texlab_core.batch.plan import find_plan
 from texlab_core.batch.running import run_batch
 from texlab_core.errors import InputError
+from texlab_core.files.regular import read_regular
 from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 PLAN = "gallery:de-bonet-800"
 SAMPLE = 40
 QUALITY = 85
+# Of a picture of the batch.
+MAX_BYTES = 2**24
 _BESIDE = (
     "They are spread evenly over the 800; click a heading to sort. Each texture is shown at its full size. "
     f"<code>texlab batch {PLAN} --sample {SAMPLE} --out FOLDER</code> makes them again, each with its recipe; "
@@ -38,7 +41,7 @@ def report(folder: str | Path, sample: int = SAMPLE) -> bytes:
     done = run_batch(plan, folder, sample=sample)
 
     def inside(path: str) -> str:
-        return _data_uri((Path(folder) / path).read_bytes())
+        return _data_uri(read_regular(Path(folder) / path, MAX_BYTES))
 
     pieces = page_of(
         f"{plan.name}: a sample of {sample}",
