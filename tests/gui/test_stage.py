@@ -429,6 +429,10 @@ def test_whole_figures_are_shown_in_any_width(qtbot: Any) -> None:
     assert counts == sorted(counts)
     assert counts[-1] == 3
     foot.set_words("beside")
+    # Under each other they are shown as far as they are whole in the height of the picture.
+    foot.resize(foot.frame("beside").width, foot.heights[0])
+    assert [label.isVisible() for label in foot.figures] == [True, False, False]
+    foot.resize(foot.frame("beside").width, 300)
     assert all(label.isVisible() for label in foot.figures)
     assert foot.minimumWidth() == foot.maximumWidth() == foot.frame("beside").width
     foot.set_words("below")
