@@ -39,7 +39,8 @@ def over_folder(qtbot, dock, folder, *, say=True):
     box.activated.emit(box.currentIndex())
     dialog = dock.findChild(QFileDialog, "sweeps-textures-dialog")
     dialog.setOption(QFileDialog.Option.DontUseNativeDialog)
-    dialog.selectFile(str(folder))
+    # A field that has the keyboard keeps its text: the file that is selected would not be taken.
+    dialog.setDirectory(str(folder))
     dialog.accept()
     choose(qtbot, dock.panel.side_box, "64 x 64")
 

@@ -28,7 +28,12 @@ def is_seen(widget: QWidget) -> bool:
     if not widget.visibleRegion().isEmpty():
         return True
     area = _area_around(widget)
-    return area is not None and is_seen(area)
+    if area is None:
+        return False
+    viewport = area.viewport()
+    # What lies in the part that is scrolled to and is not painted has something else over it.
+    inside = viewport.rect().intersects(QRect(widget.mapTo(viewport, QPoint()), widget.size()))
+    return not inside and is_seen(area)
 
 
 def is_stop(widget: QWidget) -> bool:
