@@ -165,8 +165,10 @@ class Hands:
                     QTest.keyRelease(handle, name)
         if is_there(address):
             QTest.keyPress(handle, key, held)
+        # What the key has closed goes before its release, which would be several events too.
+        QApplication.processEvents()
         if is_there(address):
-            QTest.keyRelease(handle, key, held)
+            QTest.keyRelease(handle, key)
 
     # What hands do.
 
