@@ -94,11 +94,14 @@ def test_links_to_reports_open_them_in_the_browser(window, qtbot, monkeypatch, t
     qtbot.waitUntil(lambda: len(opened) == 2)
 
 
-def test_a_report_that_is_missing_is_said(window, qtbot):
+def test_a_report_that_is_missing_is_said(window, qtbot, monkeypatch):
+    opened = []
+    monkeypatch.setattr(help_window.QDesktopServices, "openUrl", lambda url: opened.append(url) or True)
     window.browser.anchorClicked.emit(QUrl("report:../window"))
     assert not window.errands.busy
     window.browser.anchorClicked.emit(QUrl("report:no-such"))
     qtbot.waitUntil(lambda: "no-such" in window.note.text() and not window.errands.busy)
+    assert not opened
 
 
 def test_every_page_has_a_place_in_the_list():

@@ -35,6 +35,7 @@ from texlab.widgets.plain import Label, set_tip
 from texlab.window.generated_help import method_page
 from texlab.window.help_search import Section, search, sections_of
 from texlab_core.engine.registry import methods
+from texlab_core.errors import InputError
 from texlab_core.files.resources import resource
 from texlab_core.files.whole import write_whole
 
@@ -342,6 +343,8 @@ def page_text(name: str) -> str | None:
 def _report_file(name: str) -> Path:
     """Return the file of a report; a copy where the program's own lies inside an archive."""
     found = resource(f"help/reports/{name}.html")
+    if not found.is_file():
+        raise InputError(f"The help has no report called {name}.")
     if isinstance(found, Path):
         return found
     copy = Path(tempfile.mkdtemp(prefix="texlab-")) / f"{name}.html"
