@@ -23,13 +23,21 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def opened(explorer: Any) -> Any:
+def opened(explorer: Any, qtbot: Any) -> Any:
     explorer.window.actions_by_name["export-many"].trigger()
-    return explorer.handlers.exports.dialog
+    dialog = explorer.handlers.exports.dialog
+    # Under X a dialog is there before it is on the screen, and what is clicked until then moves.
+    qtbot.waitUntil(lambda: dialog.windowHandle().isExposed() and not dialog.run_button.visibleRegion().isEmpty())
+    return dialog
+
+
+def run(qtbot: Any, dialog: ExportDialog) -> None:
+    qtbot.waitUntil(dialog.run_button.isEnabled)
+    qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
 
 
 def press(qtbot: Any, dialog: ExportDialog) -> None:
-    qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
+    run(qtbot, dialog)
     qtbot.waitUntil(lambda: dialog.folder_button.isEnabled())
 
 
@@ -91,7 +99,7 @@ def test_an_animation(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path:
 
 def test_what_fails_is_said_in_the_dialog(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
     opened.out.setText(str(tmp_path / "none" / "made"))
-    qtbot.mouseClick(opened.run_button, Qt.MouseButton.LeftButton)
+    run(qtbot, opened)
     qtbot.waitUntil(lambda: "cannot be made" in opened.message.text())
     assert opened.run_button.isEnabled()
     assert not opened.folder_button.isEnabled()
@@ -100,7 +108,7 @@ def test_what_fails_is_said_in_the_dialog(explorer: Any, opened: ExportDialog, q
 def test_it_can_be_stopped(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
     opened.out.setText(str(tmp_path / "made"))
     opened.seeds.setText("1..200")
-    qtbot.mouseClick(opened.run_button, Qt.MouseButton.LeftButton)
+    run(qtbot, opened)
     assert opened.stop_button.isEnabled()
     qtbot.mouseClick(opened.stop_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: opened.message.text() == "Stopped; nothing was written.")
