@@ -172,7 +172,8 @@ class Workbench:
             )
             with self._one_blas_thread():
                 result = run(job, should_stop=should_stop, cache=self.cache, threads=threads)
-            return Outcome(order.key, order.finish(result), elapsed_s=time.perf_counter() - start)
+                finished = order.finish(result)
+            return Outcome(order.key, finished, elapsed_s=time.perf_counter() - start)
         except Cancelled:
             raise
         except InputError as error:
