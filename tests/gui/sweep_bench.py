@@ -10,7 +10,8 @@ from texlab.docks.host import DockHost
 from texlab.docks.sweeps.dock import SweepsDock
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.chosen import Column, Sample, State
+from texlab.state.session import Session
 from texlab.style.theme import LIGHT
 from texlab.window.carrier import Carrier
 from texlab_core.sheets.sweep import Vary

@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, wait_idle
 from texlab.state.changes import as_a_whole, at_full_size, is_reduced, reduced_words, sample_of
-from texlab.state.session import TRANSPARENCY, Sample, Session
+from texlab.state.chosen import TRANSPARENCY, Sample
+from texlab.state.session import Session
 from texlab.window.save_kinds import chosen_bits, named, save_kinds, saved_words
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image

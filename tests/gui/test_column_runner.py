@@ -14,7 +14,7 @@ from texlab.runs.column_runner import MEASURING_SHARE, OVERDUE_S, ColumnRunner, 
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.sweep_run import SweepRun, sweep_of
 from texlab.runs.worker import Worker
-from texlab.state.session import Column, State
+from texlab.state.chosen import Column, State
 from texlab.state.sweeps import SweepPlan
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job

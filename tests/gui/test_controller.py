@@ -9,8 +9,9 @@ import pytest
 
 from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab.runs.controller import Controller
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.scene import Probe
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.session import Session
 from texlab.state.sweeps import NO_SWEEP, SweepPlan
 from texlab_core.engine.inputs import Crop
 from texlab_core.sheets.sweep import Vary

@@ -21,8 +21,9 @@ from texlab.docks.findings.words import (
     try_it,
 )
 from texlab.runs.controller import Controller
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.intentions import ChangeMethod, EditParams
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.session import Session
 from texlab.style.pictures import Mark, to_picture
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import methods

@@ -11,7 +11,7 @@ from sweep_bench import LEFT, PATIENCE_MS, RECIPE, choose, complete, enter, make
 from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab.docks.sweeps.axis import AxisEditor
 from texlab.runs.sweep_run import sweep_of
-from texlab.state.session import Column
+from texlab.state.chosen import Column
 from texlab.state.sweeps import SweepPlan
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError

@@ -31,9 +31,10 @@ from texlab.docks.tuning.points import (
 from texlab.runs.controller import Controller
 from texlab.runs.kept_points import MOST, KeptPoints, small
 from texlab.runs.slots import Slots
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.intentions import RunTuning, StopTuning, TakeCell
 from texlab.state.scene import ColumnScene, Scene
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.session import Session
 from texlab.state.sweeps import ShownCell, SweepScene
 from texlab.state.tuning import TuningPlan, TuningScene
 from texlab.style.pictures import to_picture

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from texlab.state import intentions
+from texlab.state.chosen import Column, State
 from texlab.state.intentions import (
     AskOnce,
     CellAsColumn,
@@ -35,7 +36,7 @@ from texlab.state.intentions import (
     Tell,
 )
 from texlab.state.scene import Frame
-from texlab.state.session import Column, Session, State
+from texlab.state.session import Session
 from texlab.state.sweeps import SweepPlan
 from texlab.window.carrier import Carrier
 from texlab_core.engine.inputs import DataInput, ImageInput, hash_arrays

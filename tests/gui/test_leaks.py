@@ -21,8 +21,9 @@ from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.docks.recent import Recent, Same
 from texlab.runs import kept_points
 from texlab.runs.kept_points import KeptPoints
+from texlab.state.chosen import Sample
 from texlab.state.scene import ColumnScene
-from texlab.state.session import Sample, Session
+from texlab.state.session import Session
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods

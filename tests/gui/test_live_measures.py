@@ -9,7 +9,8 @@ import pytest
 from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab.runs.column_run import Measured, MeasureRun
 from texlab.runs.controller import Controller
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.chosen import Column, Sample, State
+from texlab.state.session import Session
 from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.registry import measure_all

@@ -18,7 +18,8 @@ from tests.gui.conftest import drag, hb, ids, result_image, wait_idle
 from texlab.app.start import closed_by_signals
 from texlab.runs.worker import Worker
 from texlab.state import session as session_module
-from texlab.state.session import Sample, Session
+from texlab.state.chosen import Sample
+from texlab.state.session import Session
 from texlab.storage.kept_exemplar import Kept, keep, load
 from texlab.storage.settings import Settings
 from texlab.widgets.status_line import StatusLine

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from texlab.state.session import Column, Session, State
+from texlab.state.chosen import Column, State
+from texlab.state.session import Session
 from texlab.storage.reading import Choice
 from texlab.window.exchange import Exchange
 from texlab.window.opener import Opener

@@ -14,8 +14,9 @@ from PySide6.QtWidgets import QApplication, QMenu
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.runs.exemplar import prepare
 from texlab.state.changes import restored
+from texlab.state.chosen import Column, State
 from texlab.state.intentions import Open
-from texlab.state.session import Column, Session, State
+from texlab.state.session import Session
 from texlab.storage.reading import open_source
 from texlab_core.documents.record import save_result
 from texlab_core.engine.job import Job

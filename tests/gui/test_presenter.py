@@ -15,7 +15,8 @@ from PySide6.QtGui import QAction
 from texlab.columns.overlays import Overlays, available
 from texlab.columns.status import details, status_parts
 from texlab.runs.exemplar import Prepared
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.chosen import Column, Sample, State
+from texlab.state.session import Session
 from texlab.style.pictures import Lit, Mark, to_picture
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.view_link import ViewLink

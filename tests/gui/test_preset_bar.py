@@ -14,8 +14,9 @@ from texlab.presets.bar import PresetBar
 from texlab.presets.dialog import PresetDialog
 from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.session import Session
 from texlab.window.carrier import Carrier
 from texlab_core.documents.presets import Preset, read_preset, write_preset
 from texlab_core.engine.registry import find_method

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.columns.status import figures, numbers_of, shows_numbers
-from texlab.state.session import Sample, Session, State
+from texlab.state.chosen import Sample, State
+from texlab.state.session import Session
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import open_project, project_of
 from texlab_core.documents.preset_store import PresetStore

@@ -10,8 +10,9 @@ import pytest
 
 from texlab.runs.drafts import SMALLEST_DRAFT, draft_size
 from texlab.state.changes import fitting, fresh_ids, rescaled, sample_of, with_code, with_crop_of
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.difference import difference
-from texlab.state.session import MAX_HISTORY, Column, Sample, Session, State
+from texlab.state.session import MAX_HISTORY, Session
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput, hash_arrays
 from texlab_core.engine.registry import methods
 

@@ -14,7 +14,8 @@ import pytest
 
 from tests.core.kills import deaths
 from texlab.app.crash import CrashHandler
-from texlab.state.session import Column, Sample, Session, State
+from texlab.state.chosen import Column, Sample, State
+from texlab.state.session import Session
 from texlab.storage.autosave import Autosave
 from texlab.storage.kept_exemplar import Kept, keep, kept_exemplar, load
 from texlab.storage.paths import config_dir, log_file

@@ -12,7 +12,7 @@ from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab.docks.sweeps.places import NARROWEST
 from texlab.docks.sweeps.words import arranged, sortings
 from texlab.state.changes import with_cell
-from texlab.state.session import Column, State
+from texlab.state.chosen import Column, State
 from texlab.style.theme import LIGHT
 from texlab_core.engine.registry import find_method
 from texlab_core.measures.registry import measures

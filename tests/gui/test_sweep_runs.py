@@ -13,7 +13,7 @@ from sweep_bench import LEFT, PATIENCE_MS, choose, complete, enter, make_bench, 
 
 from tests import stub_method
 from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
-from texlab.state.session import Column
+from texlab.state.chosen import Column
 from texlab_core.engine.run import run
 
 pytestmark = pytest.mark.usefixtures("stub")

@@ -11,7 +11,7 @@ from sweep_bench import LEFT, PATIENCE_MS, choose, click_cell, complete, make_be
 
 from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab.docks.sweeps.textures import ITEMS
-from texlab.state.session import Column
+from texlab.state.chosen import Column
 from texlab.style.pictures import to_picture
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.pair_layer import difference_picture

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from texlab.app.explorer import Explorer
-    from texlab.state.session import Column
+    from texlab.state.chosen import Column
 
 
 def expected(texture: Any, column: Column, size: tuple[int, int] = (48, 48), seed: int = 5) -> Any:

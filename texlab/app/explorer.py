@@ -20,8 +20,9 @@ from texlab.presets.manager import PresetManager
 from texlab.runs.controller import Controller
 from texlab.runs.slots import Slots
 from texlab.state.changes import as_a_whole, at_full_size
+from texlab.state.chosen import Column, State
 from texlab.state.intentions import OpenLesson
-from texlab.state.session import Column, Session, State
+from texlab.state.session import Session
 from texlab.storage.autosave import Autosave
 from texlab.storage.paths import config_dir, results_dir
 from texlab.storage.projects import is_project

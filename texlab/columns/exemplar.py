@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QContextMenuEvent, QResizeEvent
     from PySide6.QtWidgets import QWidget
 
-    from texlab.state.session import Sample
+    from texlab.state.chosen import Sample
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
     from texlab.widgets.view_link import ViewLink

@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from texlab.presets.dialog import PresetDialog
+from texlab.state.chosen import State
 from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
-from texlab.state.session import State
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name
 from texlab_core.documents.presets import Preset, PresetError, read_preset
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
     from texlab.presets.bar import PresetBar
-    from texlab.state.session import Column
+    from texlab.state.chosen import Column
     from texlab_core.engine.inputs import ImageInput
 
 Listed = tuple[str, list[Preset], set[tuple[str, str]], tuple[str, ...]]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from texlab.runs.column_run import TaskLike
     from texlab.runs.slots import Slots
     from texlab.runs.worker import Request
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab.state.sweeps import CellsScene, ShownCell
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.warming import Warmth

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.result import Result

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from texlab.runs.column_run import Keep
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab.style.pictures import Picture
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput

@@ -14,7 +14,7 @@ from texlab_core.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from texlab.state.session import Column
+    from texlab.state.chosen import Column
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.registry import Estimate
 

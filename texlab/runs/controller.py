@@ -29,10 +29,11 @@ from texlab_core.warming import Need, Warmth, every_need
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from texlab.state.chosen import Sample, State
     from texlab.state.filling import FillPlan
     from texlab.state.lesson_scene import LessonScene
     from texlab.state.scene import Frame
-    from texlab.state.session import Sample, Session, State
+    from texlab.state.session import Session
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Picture

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from texlab.state.session import Sample
+    from texlab.state.chosen import Sample
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.levels import Levels

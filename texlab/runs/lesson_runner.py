@@ -13,8 +13,8 @@ from texlab.runs.column_run import ColumnRun, Loading, MeasureRun, job_of, key_o
 from texlab.runs.slots import Rank
 from texlab.runs.worker import Worker
 from texlab.state.changes import sample_as_used
+from texlab.state.chosen import State
 from texlab.state.lessons import StepPictures, state_of
-from texlab.state.session import State
 from texlab_core.errors import InputError
 from texlab_core.warming import Need
 

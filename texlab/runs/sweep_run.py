@@ -22,7 +22,7 @@ from texlab_core.sheets.texture_grid import left_out_words, read_textures, textu
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab.state.sweeps import SweepPlan
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.sheets.texture_grid import TextureGrid

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from texlab.runs.slots import Slots
     from texlab.runs.worker import Request
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab.state.sweeps import SweepPlan
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.warming import Warmth

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from texlab.runs.slots import Slots
     from texlab.runs.worker import Request
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab.state.tuning import TuningPlan
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.engine.job import Job

@@ -6,7 +6,7 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from texlab.state.session import Column, Sample, State
+from texlab.state.chosen import Column, Sample, State
 from texlab_core.engine.params import describe
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 

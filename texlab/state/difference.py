@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
 
 
 @dataclass(frozen=True)

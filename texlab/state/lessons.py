@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from texlab.state.session import Column, Sample, State
+from texlab.state.chosen import Column, Sample, State
 from texlab_core.documents.lesson_parts import Drawing, LessonError, Place, StepColumn, Tab, Taken
 from texlab_core.documents.lessons import LessonStep
 from texlab_core.engine.inputs import ImageInput

@@ -19,7 +19,8 @@ from texlab_core.files.leftovers import sweep
 if TYPE_CHECKING:
     from typing import Any
 
-    from texlab.state.session import Sample, Session, State
+    from texlab.state.chosen import Sample, State
+    from texlab.state.session import Session
     from texlab.storage.sessions import OwnSession
     from texlab.storage.settings import Settings
     from texlab_core.engine.inputs import ImageInput

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Container
     from pathlib import Path
 
-    from texlab.state.session import Sample
+    from texlab.state.chosen import Sample
     from texlab_core.engine.inputs import ImageInput
 
 log = logging.getLogger(__name__)

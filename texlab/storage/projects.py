@@ -6,7 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from texlab.state.session import Column, Sample, State
+from texlab.state.chosen import Column, Sample, State
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import PresetError

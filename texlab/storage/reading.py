@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeGuard
 
 from texlab.state.changes import Opened
-from texlab.state.session import TRANSPARENCY
+from texlab.state.chosen import TRANSPARENCY
 from texlab.storage.kept_exemplar import Kept, kept_exemplar, load
 from texlab.widgets.pasted import Pasted, pixels_of
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput

@@ -21,7 +21,7 @@ from texlab_core.files.whole import write_whole
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from texlab.state.session import Column, State
+    from texlab.state.chosen import Column, State
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.params import Params
     from texlab_core.engine.registry import Method

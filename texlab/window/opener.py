@@ -17,7 +17,7 @@ from texlab.state.changes import (
     with_crop_of,
     with_method,
 )
-from texlab.state.session import Sample, Session
+from texlab.state.chosen import Sample
 from texlab.storage.projects import OpenedProject, is_project, open_project
 from texlab.storage.reading import (
     Choice,
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
+    from texlab.state.session import Session
     from texlab.storage.reading import Source
     from texlab.storage.settings import Settings
     from texlab_core.documents.presets import Preset

@@ -227,7 +227,7 @@ class InputsDock(FramedDock):
         scale = self.scale.value() / 100
         if crop is not None:
             from texlab.state.changes import rescaled
-            from texlab.state.session import Sample
+            from texlab.state.chosen import Sample
 
             crop = rescaled(Sample(ImageInput(given.origin.pixels, given.name, ""), before, crop), scale).crop  # type: ignore[union-attr]
         self._change(scale, crop, "scale of an input")
