@@ -19,7 +19,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -21,7 +21,7 @@ from texlab_core.errors import Cancelled
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.kernels.jit import njit
 from texlab_core.methods.efros_leung.draft import draft
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import Matching
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pypdf
 import pytest
 
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab

@@ -23,7 +23,7 @@ from texlab_core.batch.choices import _lines as batch_lines
 from texlab_core.batch.plan import read_plan
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.documents.presets import read_preset
-from texlab_core.documents.project import read_project
+from texlab_core.documents.project_reading import read_project
 from texlab_core.documents.record import read_recipe
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
@@ -33,7 +33,7 @@ from texlab_core.images.formats import maps
 from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.named_input import read_arrays
 from texlab_core.methods.spectral.codefile import load_code_input, read_code
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,7 +15,7 @@ from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import write_image
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 
 if TYPE_CHECKING:
     from tests.cli.conftest import Texlab

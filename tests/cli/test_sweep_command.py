@@ -12,7 +12,7 @@ from stub_method import running, stub  # noqa: F401
 from texlab.cli.commands._options import own_presets
 from texlab.cli.main import main
 from texlab_core.documents.presets import Preset
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 GRAVEL = "gallery:stochastic-gravel"

@@ -14,7 +14,7 @@ from texlab_core.documents.record import read_recipe
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import find_method, methods
 from texlab_core.engine.run import run
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 BEFORE = Path(__file__).parent.parent / "data" / "before"
 RESULTS = sorted(BEFORE.glob("*.png"))

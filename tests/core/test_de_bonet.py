@@ -20,7 +20,7 @@ from texlab_core.methods.de_bonet import sampling as sampling_module
 from texlab_core.methods.de_bonet.distances import feature_distances, passing_share
 from texlab_core.methods.de_bonet.explain import explain
 from texlab_core.methods.de_bonet.maps import median_candidates
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet.binding import binding, binding_steps
 from texlab_core.methods.de_bonet.explain import explain
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.sampling import Sampling, match_chain
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 

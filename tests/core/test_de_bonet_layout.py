@@ -190,7 +190,7 @@ def test_at_its_own_size_a_texture_is_new_unless_nothing_may_differ() -> None:
     from texlab_core.images.exemplar import as_exemplar
     from texlab_core.measures.registry import measure_all
     from texlab_core.measures.subject import Subject
-    from texlab_core.methods.de_bonet.method import DeBonetParams
+    from texlab_core.methods.de_bonet.params import DeBonetParams
 
     exemplar = as_exemplar("gallery:stochastic-gravel")
     same, new = (

@@ -14,7 +14,7 @@ from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.methods.de_bonet import search
 from texlab_core.methods.de_bonet.explain import explain
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.steerable import SteerableAnalysis
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.transforms import steerable

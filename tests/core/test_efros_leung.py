@@ -15,7 +15,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.engine.streams import Streams
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import FULL_SPREAD, effective_tau, integer_weights, offsets
 
 if TYPE_CHECKING:

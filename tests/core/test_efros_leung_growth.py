@@ -17,7 +17,7 @@ from texlab_core.measures.copying import continuous_share
 from texlab_core.methods.efros_leung import growth as growth_module
 from texlab_core.methods.efros_leung.draft import draft
 from texlab_core.methods.efros_leung.explain import explain
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import LARGEST_SUM, Matching, integer_weights, offsets
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from texlab_core.sheets.figure import Figure, encode_figure, figure_page, letter
 from texlab_core.sheets.figure_items import Box, Picture, Words
 from texlab_core.sheets.figure_pdf import attached_text
 from texlab_core.sheets.figure_svg import carried_text
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 from texlab_core.sheets.typeface import typeface
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -24,7 +24,7 @@ from texlab_core.images.formats.reading import read_image
 from texlab_core.images.masks import as_blend, as_mask, feathered
 from texlab_core.methods.efros_leung.by_parts import PartStreams
 from texlab_core.methods.efros_leung.filling import grown_by, with_reach
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 from texlab_core.methods.efros_leung.parts import CELL, TILE, WHOLE, dilated, parts_of, size_of
 from texlab_core.methods.efros_leung.patches import check_patches, pack_patches, patches_of
 from texlab_core.methods.efros_leung.windows import integer_weights, offsets

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texlab_core.documents.project import Project, encode_project, read_project
+from texlab_core.documents.project import Project, encode_project
+from texlab_core.documents.project_reading import read_project
 from texlab_core.documents.reading import read_recipe
 from texlab_core.documents.record import save_result
 from texlab_core.engine.inputs import Crop

@@ -21,9 +21,9 @@ from texlab_core.documents.project import (
     ProjectColumn,
     ProjectError,
     encode_project,
-    read_project,
     save_project,
 )
+from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.inputs import ArraysInput, Crop, ImageInput
 from texlab_core.engine.levels import Levels
 from texlab_core.engine.registry import find_method
@@ -174,7 +174,7 @@ def test_links_locks_and_bombs_are_refused(saved, tmp_path, monkeypatch):
     with pytest.raises(ProjectError, match="is no file"):
         read_project(rebuilt(saved, infos=[(link("results/9.png"), b"/etc/passwd")]))
     saved.write_bytes(original)
-    monkeypatch.setattr("texlab_core.documents.project.MAX_BYTES", 2**20)
+    monkeypatch.setattr("texlab_core.documents.project_reading.MAX_BYTES", 2**20)
     with pytest.raises(ProjectError, match="unpacks to more than 1 MB"):
         read_project(rebuilt(saved, {"results/8.png": bytes(3 * 2**20)}))
     saved.write_bytes(original)
@@ -291,7 +291,7 @@ def test_damaged_archives_are_one_sentence(saved):
 
 
 def test_a_project_that_would_be_too_large_is_refused(monkeypatch, tmp_path):
-    monkeypatch.setattr("texlab_core.documents.project._MAX_INPUT", 100)
+    monkeypatch.setattr("texlab_core.documents.project.MAX_INPUT", 100)
     with pytest.raises(InputError, match="too large to be kept in a project"):
         save_project(tmp_path / "a.texlab", whole())
     assert not (tmp_path / "a.texlab").exists()

@@ -18,16 +18,10 @@ from texlab_core.files import strict_json
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.writing import write_image
 from texlab_core.sheets.sweep import Cell, Vary, sweep_of
-from texlab_core.sheets.sweep_recipes import (
-    TEXT_KEY,
-    ExemplarChoice,
-    SweepRecipe,
-    bundled_sweeps,
-    find_sweep,
-    sweep_recipe_from_json,
-)
+from texlab_core.sheets.sweep_recipes import TEXT_KEY, ExemplarChoice, SweepRecipe, sweep_recipe_from_json
 from texlab_core.sheets.sweep_running import run_sweep
 from texlab_core.sheets.sweep_sheet import sweep_sheet, write_sheet
+from texlab_core.sheets.sweep_sources import bundled_sweeps, find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 

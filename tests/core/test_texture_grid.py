@@ -17,9 +17,10 @@ from texlab_core.images.formats.writing import write_image
 from texlab_core.images.gallery import gallery
 from texlab_core.images.sources import sources_of
 from texlab_core.sheets.sweep import Sweep, Vary
-from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep, sweep_recipe_from_json
+from texlab_core.sheets.sweep_recipes import SweepRecipe, sweep_recipe_from_json
 from texlab_core.sheets.sweep_running import run_sweep
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
+from texlab_core.sheets.sweep_sources import find_sweep
 from texlab_core.sheets.texture_grid import left_out_words, read_textures, texture_grid
 
 pytestmark = pytest.mark.usefixtures("stub")

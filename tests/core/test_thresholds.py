@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from texlab_core.engine.params import ParamValue
 from texlab_core.errors import ParamError
 from texlab_core.methods.de_bonet.features import Feature, channel_names, feature_list
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import MAX_CELLS, ThresholdTable, threshold_law
 
 NAMES = [feature.name for feature in feature_list(channel_names(3), "both", 7)]

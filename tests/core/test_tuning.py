@@ -29,7 +29,7 @@ from texlab_core.engine.steps import Output, Step
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.sheets.tuning import _rounds, kind_of, tune
 from texlab_core.sheets.tuning_final import FINAL, SHORT_FINAL, Final, Tried, best_at_the_end, compared, promising
 from texlab_core.sheets.tuning_moves import MOST_OFTEN, Effect, Move, moves, together

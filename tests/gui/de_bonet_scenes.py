@@ -12,7 +12,7 @@ from texlab.state.scene import ColumnScene, Probe, Scene
 from texlab.style.pictures import to_picture
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 
 
 def exemplar(channels: int = 3) -> Any:

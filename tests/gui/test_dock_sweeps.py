@@ -16,7 +16,7 @@ from texlab.state.sweeps import SweepPlan
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import Vary
-from texlab_core.sheets.sweep_recipes import bundled_sweeps
+from texlab_core.sheets.sweep_sources import bundled_sweeps
 
 pytestmark = pytest.mark.usefixtures("stub")
 

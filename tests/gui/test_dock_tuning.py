@@ -43,7 +43,7 @@ from texlab.window.carrier import Carrier
 from texlab_core.engine.job import Job
 from texlab_core.engine.result import Result
 from texlab_core.errors import Cancelled, InputError, ParamError
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.sheets.sweep import Cell, Sweep, Vary
 
 pytestmark = pytest.mark.usefixtures("stub")

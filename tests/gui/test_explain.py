@@ -30,7 +30,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.methods.de_bonet.explain import explain
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 
 LEFT = Qt.MouseButton.LeftButton
 LOOSE = {"alpha": 1.2, "siblings": "parity"}

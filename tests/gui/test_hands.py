@@ -16,7 +16,7 @@ from texlab.widgets.tables import add_copying, list_text
 from texlab.window.palette import CommandPalette, best_first
 from texlab_core.engine.registry import methods
 from texlab_core.lessons.shelf import bundled
-from texlab_core.sheets.sweep_recipes import bundled_sweeps
+from texlab_core.sheets.sweep_sources import bundled_sweeps
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,7 +17,7 @@ from texlab.runs.column_run import Finished
 from texlab.runs.slots import Slots
 from texlab.runs.worker import Worker
 from texlab_core.engine.run import run
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 
 
 class Gate:

@@ -17,7 +17,8 @@ from texlab.storage.paths import config_dir
 from texlab.storage.projects import open_project, project_of
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import Preset
-from texlab_core.documents.project import read_project, save_project
+from texlab_core.documents.project import save_project
+from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.inputs import Crop
 from texlab_core.images.exemplar import as_exemplar
 

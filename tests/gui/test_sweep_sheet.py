@@ -12,7 +12,7 @@ from sweep_bench import LEFT, PATIENCE_MS, RECIPE, choose, complete, make_bench 
 from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab.docks.sweeps.places import packed
 from texlab.style.theme import DARK, LIGHT
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 pytestmark = pytest.mark.usefixtures("stub")
 

@@ -34,7 +34,7 @@ from texlab.state.intentions import EditField
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.engine.registry import methods
 from texlab_core.methods.de_bonet.distances import feature_distances
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 
 CONTROL = Qt.KeyboardModifier.ControlModifier

@@ -11,7 +11,7 @@ from texlab.runs.column_run import TaskLike, job_of
 from texlab.runs.kept_points import small
 from texlab.state.sweeps import ShownCell
 from texlab.state.tuning import TuningScene
-from texlab_core.sheets.tuning import Trial, tune
+from texlab_core.sheets.tuning import tune
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QObject
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from texlab_core.engine.job import Job
     from texlab_core.sheets.sweep import Cell
     from texlab_core.sheets.sweep_running import Places
+    from texlab_core.sheets.tuning_report import Trial
     from texlab_core.warming import Warmth
 
 

@@ -9,7 +9,7 @@ from texlab.state.sweeps import CellsScene
 from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
-    from texlab_core.sheets.tuning import Tuning
+    from texlab_core.sheets.tuning_report import Tuning
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from texlab.state.chosen import Column, Sample, State
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import PresetError
-from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn, read_project
+from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn
+from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:

@@ -114,7 +114,7 @@ class HelpDesk(QObject):
     def _read(self) -> Found:
         """Return the lessons there are, and the ready-made sweeps that come with the program."""
         from texlab_core.lessons.shelf import bundled, own
-        from texlab_core.sheets.sweep_recipes import bundled_sweeps
+        from texlab_core.sheets.sweep_sources import bundled_sweeps
 
         shelves = (bundled(), False), (own(self._lessons)[0], True)
         lessons = [(name, each, mine) for shelf, mine in shelves for name, each in shelf.items()]

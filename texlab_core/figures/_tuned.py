@@ -22,7 +22,8 @@ from texlab_core.errors import InputError
 from texlab_core.figures.defaults import OUTPUT, centre, homogeneous
 from texlab_core.measures.registry import measure_all
 from texlab_core.measures.subject import PreparedCache, Subject
-from texlab_core.sheets.tuning import GAINED, KEPT, tune
+from texlab_core.sheets.tuning import tune
+from texlab_core.sheets.tuning_report import GAINED, KEPT
 from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from texlab_core.figures import Figure
 from texlab_core.figures._tools import evidence, make, page, picture, texture, title_of
 from texlab_core.measures.registry import written
 from texlab_core.sheets.contact_sheet import Tile
-from texlab_core.sheets.sweep_recipes import find_sweep
 from texlab_core.sheets.sweep_running import run_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 if TYPE_CHECKING:
     import numpy as np

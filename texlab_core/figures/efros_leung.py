@@ -9,7 +9,7 @@ import numpy as np
 from texlab_core.figures import Figure
 from texlab_core.figures._tools import evidence, make, page, texture, title_of
 from texlab_core.sheets.contact_sheet import Tile
-from texlab_core.sheets.sweep_recipes import find_sweep
+from texlab_core.sheets.sweep_sources import find_sweep
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

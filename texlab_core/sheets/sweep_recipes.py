@@ -1,12 +1,11 @@
-"""Sweeps as versioned JSON: the ready-made ones, files of the user's, and what a contact sheet carries."""
+"""Sweeps as versioned JSON."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.recipe import known_measures, measures_from_json
 from texlab_core.engine.inputs import Crop, ImageInput, exemplar_of
@@ -16,11 +15,6 @@ from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_from_json, size_to_json
 from texlab_core.errors import InputError, RecipeError
 from texlab_core.files import strict_json
-from texlab_core.files.regular import open_regular, reason
-from texlab_core.files.resources import resource
-from texlab_core.files.wording import did_you_mean
-from texlab_core.images.formats.png_text import SIGNATURE, read_text
-from texlab_core.sheets.figure import FIGURE_SUFFIXES
 from texlab_core.sheets.sweep import MAX_CELLS, Sweep, Vary, check_knob, spread
 from texlab_core.sheets.texture_grid import TextureGrid, texture_grid
 
@@ -37,7 +31,6 @@ FORMAT = "texlab-sweep"
 # Version 1 has no textures, and is what is written where there are none.
 VERSION = 2
 TEXT_KEY = "texlab-sweep"
-_FIGURE_HEAD = 4 * strict_json.MAX_BYTES
 _KEYS = (
     "format",
     "version",
@@ -358,61 +351,3 @@ def _crop(data: object, role: str) -> Crop | None:
     if not isinstance(data, dict) or set(data) != set(keys) or any(type(data[key]) is not int for key in keys):
         raise RecipeError(f"{role}: crop must hold {', '.join(keys)}, got {strict_json.shorten(data)}.")
     return Crop(**data)
-
-
-def bundled_sweeps(method: str | None = None) -> tuple[SweepRecipe, ...]:
-    """Return the sweeps that come with the program (of one method), by name."""
-    found = []
-    for file in resource("sweeps").iterdir():
-        if file.name.endswith(".json"):
-            what = f"the bundled sweep {file.name}"
-            data = strict_json.loads(file.read_bytes(), what=what, error=RecipeError)
-            found.append(sweep_recipe_from_json(data, what=what))
-    return tuple(sorted((each for each in found if method in (None, each.method)), key=lambda each: each.name))
-
-
-def find_sweep(source: str) -> SweepRecipe:
-    """Return what ``FILE|NAME`` means: a JSON file, the contact sheet of an earlier sweep, or a bundled one.
-
-    Raises
-    ------
-    RecipeError
-        When there is none, or it cannot be used.
-    """
-    path = Path(source)
-    if path.suffix.lower() == ".json":
-        what = f"the sweep {path.name}"
-        return sweep_recipe_from_json(strict_json.load(path, what=what, error=RecipeError), what=what)
-    if path.suffix.lower() in (".png", *FIGURE_SUFFIXES):
-        return _from_sheet(path)
-    known = {each.name: each for each in bundled_sweeps()}
-    if source in known:
-        return known[source]
-    hint = did_you_mean(source, known) or f"there are {', '.join(known)}"
-    raise RecipeError(f"There is no sweep called {strict_json.shorten(source)} ({hint}).")
-
-
-def _from_sheet(path: Path) -> SweepRecipe:
-    try:
-        with open_regular(path) as file:
-            text = _carried(file)
-    except OSError as bad:
-        raise RecipeError(f"{path}: cannot be opened ({reason(bad)}).") from bad
-    except ValueError as bad:
-        raise RecipeError(f"The sheet {path.name} cannot be used ({bad}).") from bad
-    if text is None:
-        raise RecipeError(f"{path.name} is no contact sheet of a sweep: it carries no recipe.")
-    what = f"the sheet {path.name}"
-    return sweep_recipe_from_json(strict_json.loads(text, what=what, error=RecipeError), what=what)
-
-
-def _carried(file: BinaryIO) -> str | bytes | None:
-    """Return the recipe in a sheet; it stands at the beginning of a figure."""
-    head = file.read(_FIGURE_HEAD)
-    if head.startswith(SIGNATURE):
-        file.seek(len(SIGNATURE))
-        return read_text(file, TEXT_KEY, strict_json.MAX_BYTES)
-    from texlab_core.sheets.figure_pdf import attached_text
-    from texlab_core.sheets.figure_svg import carried_text
-
-    return attached_text(head) if head.startswith(b"%PDF-") else carried_text(head)

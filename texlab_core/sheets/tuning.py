@@ -9,14 +9,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from dataclasses import dataclass, field
 from functools import partial
-from itertools import takewhile
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import MAX_SEED, Job
-from texlab_core.engine.params import frozen_mapping
 from texlab_core.engine.run import model_of
 from texlab_core.engine.streams import Streams
 from texlab_core.errors import InputError, ParamError
@@ -24,266 +21,24 @@ from texlab_core.measures.registry import find_measure, measure_all
 from texlab_core.measures.subject import PreparedCache
 from texlab_core.sheets.sweep_running import run_sweep, run_sweep_elsewhere
 from texlab_core.sheets.tuning_final import FINAL, FINAL_FROM, SHORT_FINAL, Tried, best_at_the_end, promising
+from texlab_core.sheets.tuning_report import GAINED, KEPT, Trial, Tuning
+from texlab_core.sheets.tuning_runs import Runs
 from texlab_core.sheets.tuning_search import DEFAULT_BUDGET, SEARCH_SEEDS, Measured, knob_rounds
 from texlab_core.sheets.tuning_thresholds import MOST_SEEDS, layout_of, threshold_rounds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Sequence
 
-    from texlab_core.documents.presets import Preset
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
     from texlab_core.sheets.sweep_running import Elsewhere, Places
     from texlab_core.sheets.tuning_final import Final
     from texlab_core.sheets.tuning_search import Rounds
 
-KEPT = "discriminability"
-GAINED = "visual-difference"
 DEFAULT_LIMIT = -3.1
 MAX_BUDGET = 5000
 
 Limit = float | Literal["start"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Trial(Measured):
-    """One finished run of a search.
-
-    Parameters
-    ----------
-    index
-        Place in the order of asking.
-    phase
-        Part of the search that asked for it: "start", "alpha and coarsest side", "layouts", "fresh seeds".
-    seed
-        Of its random numbers.
-    kept, gained
-        The two numbers (D and V); NaN when it failed.
-    error
-        Why it failed, one sentence.
-    """
-
-    index: int
-    phase: str
-    seed: int
-    error: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Tuning:
-    """What a search found, and everything that it tried.
-
-    Parameters
-    ----------
-    base
-        The job that it began with.
-    limit
-        D was to be no larger.
-    trials
-        All runs, in the order of asking; the first is ``base``.
-    found
-        The suggested parameters; those of ``base`` where nothing better holds on seeds that the search never saw.
-    kept, gained
-        Means of D and V of ``found`` over those seeds, and the same of ``base``.
-    fresh
-        Number of those seeds.
-    """
-
-    base: Job
-    limit: float
-    trials: tuple[Trial, ...]
-    found: Params
-    kept: float
-    gained: float
-    base_kept: float
-    base_gained: float
-    budget: int
-    fresh: int
-    knobs: tuple[str, ...] = ()
-
-    @property
-    def changes(self) -> Mapping[str, Any]:
-        """The parameters that differ from those of the base, by name."""
-        before = self.base.params
-        return frozen_mapping(
-            {name: value for name, value in self.found.to_json().items() if value != before.to_json()[name]}
-        )
-
-    @property
-    def sentence(self) -> str:
-        """What was found, in one or two sentences."""
-        kept, gained = find_measure(KEPT), find_measure(GAINED)
-        runs = f"{len(self.trials)} runs"
-        if not self.changes:
-            return (
-                f"In {runs} nothing made more that is new with {kept.title} at most {kept.text(self.limit)} than"
-                f" what it began with ({kept.title} {kept.text(self.base_kept)},"
-                f" {gained.title} {gained.text(self.base_gained)})."
-            )
-        held = "" if self.kept <= self.limit else f" No setting reached {kept.text(self.limit)}."
-        return (
-            f"{gained.title} {gained.text(self.gained)} instead of {gained.text(self.base_gained)}, {kept.title}"
-            f" {kept.text(self.kept)} instead of {kept.text(self.base_kept)}: means over {self.fresh} seeds that"
-            f" the search never saw, after {runs}.{held}"
-        )
-
-    def preset(self, name: str) -> Preset:
-        """Return the suggestion as a preset of all parameters; raises ``PresetError`` for a name that is none."""
-        from texlab_core.documents.presets import Preset
-        from texlab_core.engine.inputs import ImageInput
-
-        exemplar = self.base.inputs.get("exemplar")
-        return Preset.of(
-            name,
-            self.base.method,
-            self.found,
-            note=f"Tuned. {self.sentence}",
-            exemplar=exemplar if isinstance(exemplar, ImageInput) else None,
-        )
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the report: what was asked, tried and found."""
-        before = self.base.params.to_json()
-
-        def differing(params: Params) -> dict[str, Any]:
-            return {name: value for name, value in params.to_json().items() if value != before[name]}
-
-        return {
-            "method": self.base.method,
-            "limit": self.limit,
-            "budget": self.budget,
-            "knobs": list(self.knobs),
-            "runs": len(self.trials),
-            "sentence": self.sentence,
-            "start": {KEPT: _number(self.base_kept), GAINED: _number(self.base_gained), "parameters": before},
-            "found": {
-                KEPT: _number(self.kept),
-                GAINED: _number(self.gained),
-                "changes": dict(self.changes),
-                "parameters": self.found.to_json(),
-            },
-            "trials": [
-                {
-                    "phase": each.phase,
-                    "seed": each.seed,
-                    "changes": differing(each.params),
-                    KEPT: _number(each.kept),
-                    GAINED: _number(each.gained),
-                    "error": each.error or None,
-                }
-                for each in self.trials
-            ],
-        }
-
-
-def _number(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
-@dataclass(frozen=True, eq=False)
-class _Round:
-    """Jobs of one round, as the runner of sweeps takes them."""
-
-    jobs: tuple[Job, ...]
-
-    def values(self, index: int) -> Mapping[str, Any]:
-        return frozen_mapping({"trial": index})
-
-
-@dataclass
-class _Search:
-    """One search under way: what was tried so far, and how much of the budget is left."""
-
-    base: Job
-    budget: int
-    on_trial: Callable[[Trial, Cell | None], None] | None
-    on_progress: Callable[[float], None] | None
-    run: Callable[..., tuple[Cell, ...]]
-    trials: list[Trial] = field(default_factory=list)
-    known: dict[tuple[Params, int], Trial] = field(default_factory=dict)
-    found: list[Measured] = field(default_factory=list)
-    seeds: tuple[int, ...] = ()
-
-    def try_all(self, phase: str, asked: Sequence[tuple[Params, int]], reserve: int) -> None:
-        """Run what was not run before, as far as the budget reaches."""
-        new = [each for place, each in enumerate(asked) if each not in asked[:place] and each not in self.known]
-        room = max(0, self.budget - reserve - len(self.trials))
-        jobs: list[Job] = []
-        for params, seed in new[:room]:
-            try:
-                jobs.append(dataclasses.replace(self.base, params=params, seed=seed))
-            except InputError as bad:
-                self._keep(
-                    Trial(
-                        index=len(self.trials),
-                        phase=phase,
-                        seed=seed,
-                        params=params,
-                        kept=math.nan,
-                        gained=math.nan,
-                        error=str(bad),
-                    )
-                )
-        if jobs:
-            self._run(phase, jobs)
-
-    def means(self, phase: str, params: Sequence[Params], seeds: Sequence[int], reserve: int) -> list[Measured]:
-        """Try parameters with several seeds; return the means of those that are known with every seed."""
-        self.try_all(phase, [(each, seed) for each in params for seed in seeds], reserve)
-        found = []
-        for each in params:
-            known = [self.known[each, seed] for seed in seeds if (each, seed) in self.known]
-            if len(known) == len(seeds):
-                kept = sum(trial.kept for trial in known) / len(known)
-                gained = sum(trial.gained for trial in known) / len(known)
-                found.append(Measured(params=each, kept=kept, gained=gained))
-        self.found += found
-        return found
-
-    def tried_so_far(self, params: Params) -> Tried:
-        """Return what is known of parameters with the seeds of the search, the first ones that are all known."""
-        known = list(takewhile(lambda seed: (params, seed) in self.known, self.seeds))
-        return self.tried(params, known or self.seeds[:SEARCH_SEEDS])
-
-    def tried(self, params: Params, seeds: Sequence[int]) -> Tried:
-        """Return what is known of parameters with several seeds; NaN where the budget did not reach."""
-        known = [self.known.get((params, seed)) for seed in seeds]
-        return Tried(
-            params,
-            tuple(math.nan if each is None else each.kept for each in known),
-            tuple(math.nan if each is None else each.gained for each in known),
-        )
-
-    def _keep(self, trial: Trial) -> None:
-        self.trials.append(trial)
-        self.known[trial.params, trial.seed] = trial
-
-    def _run(self, phase: str, jobs: list[Job]) -> None:
-        first = len(self.trials)
-
-        def trial_of(cell: Cell) -> Trial:
-            values = cell.measures
-            return Trial(
-                index=first + cell.index,
-                phase=phase,
-                seed=cell.job.seed,
-                params=cell.job.params,
-                kept=values.get(KEPT, math.nan),
-                gained=values.get(GAINED, math.nan),
-                error=cell.error,
-            )
-
-        def tell(cell: Cell) -> None:
-            if self.on_trial is not None:
-                self.on_trial(trial_of(cell), cell)
-
-        def share(fraction: float) -> None:
-            if self.on_progress is not None:
-                self.on_progress(min(1.0, (first + fraction * len(jobs)) / self.budget))
-
-        cells = self.run(_Round(tuple(jobs)), tell, on_progress=share)
-        for cell in cells:
-            self._keep(trial_of(cell))
 
 
 def tune(
@@ -358,7 +113,7 @@ def tune(
         )
     else:
         run = partial(run_sweep_elsewhere, should_stop=should_stop, elsewhere=elsewhere, ids=(KEPT, GAINED))
-    search = _Search(base, budget, on_trial, on_progress, run)
+    search = Runs(base, budget, on_trial, on_progress, run)
     final = FINAL if budget >= FINAL_FROM else SHORT_FINAL
     # Checked before anything runs.
     rounds = _rounds(base, knobs, cache, should_stop)
@@ -398,7 +153,7 @@ def _rounds(
 ) -> Callable[[Measured, float], Rounds]:
     from texlab_core.engine.params import describe
     from texlab_core.engine.registry import find_method
-    from texlab_core.methods.de_bonet.method import DeBonetParams
+    from texlab_core.methods.de_bonet.params import DeBonetParams
     from texlab_core.sheets.sweep import check_knob
 
     method = find_method(base.method)
@@ -437,7 +192,7 @@ def _cut(found: Tried, count: int) -> Tried:
 
 
 def _decide(
-    search: _Search,
+    search: Runs,
     start: Params,
     limit: Limit,
     seeds: list[int],

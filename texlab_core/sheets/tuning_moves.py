@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from texlab_core.methods.de_bonet.method import DeBonetParams
+    from texlab_core.methods.de_bonet.params import DeBonetParams
 
 # What rows are multiplied by.
 ROW_FACTORS = (0.5, 0.7, 1.4, 2.0, 4.0)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.params import Params
     from texlab_core.engine.streams import Streams
-    from texlab_core.methods.de_bonet.method import DeBonetParams
+    from texlab_core.methods.de_bonet.params import DeBonetParams
     from texlab_core.methods.de_bonet.thresholds import Cell
     from texlab_core.sheets.tuning_moves import Move
     from texlab_core.sheets.tuning_search import Rounds

@@ -110,7 +110,7 @@ def _words() -> Mapping[str, Sequence[str]]:
     from texlab_core.documents.preset_store import bundled_presets
     from texlab_core.engine.registry import methods
     from texlab_core.images.gallery import gallery
-    from texlab_core.sheets.sweep_recipes import bundled_sweeps
+    from texlab_core.sheets.sweep_sources import bundled_sweeps
 
     textures = [entry.uri for entry in gallery()]
     presets = [f"{each.method}/{each.name}" for each in (*own_presets().presets(), *bundled_presets())]

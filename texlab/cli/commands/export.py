@@ -145,7 +145,7 @@ def _base(args: argparse.Namespace) -> list[Item]:
 
 def _columns(source: str) -> list[Item]:
     """Return the columns of a project."""
-    from texlab_core.documents.project import read_project
+    from texlab_core.documents.project_reading import read_project
     from texlab_core.sheets.export import Item
 
     project = read_project(source)

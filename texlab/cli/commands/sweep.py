@@ -165,7 +165,8 @@ def plan(args: argparse.Namespace) -> tuple[SweepRecipe, ImageInput | None, list
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import InputError
     from texlab_core.sheets.sweep import Vary
-    from texlab_core.sheets.sweep_recipes import SweepRecipe, find_sweep
+    from texlab_core.sheets.sweep_recipes import SweepRecipe
+    from texlab_core.sheets.sweep_sources import find_sweep
 
     recipe = None if args.sweep is None else find_sweep(args.sweep)
     preset = named_preset(args, args.method)

@@ -80,7 +80,8 @@ def execute(args: argparse.Namespace) -> int:
     from texlab_core.engine.registry import find_method
     from texlab_core.errors import InputError, ParamError
     from texlab_core.sheets.own_line import own_measures
-    from texlab_core.sheets.tuning import DEFAULT_LIMIT, KEPT, tune
+    from texlab_core.sheets.tuning import DEFAULT_LIMIT, tune
+    from texlab_core.sheets.tuning_report import KEPT
 
     method = find_method(args.method)
     params = parse_parameters(args, method)

@@ -30,8 +30,8 @@ from texlab.widgets.slider import Slider
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import TEXTURE
-from texlab_core.sheets.sweep_recipes import bundled_sweeps
 from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
+from texlab_core.sheets.sweep_sources import bundled_sweeps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -12,7 +12,7 @@ from texlab.form.form import tooltip
 from texlab.form.knobs import NumberKnob
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.params import describe
-from texlab_core.methods.de_bonet.method import DeBonetParams
+from texlab_core.methods.de_bonet.params import DeBonetParams
 from texlab_core.methods.de_bonet.thresholds import threshold_law
 
 if TYPE_CHECKING:

@@ -171,7 +171,7 @@ def limit_choices(own: float | None) -> list[tuple[str, float | str]]:
 
 def knob_choices(method: str) -> list[tuple[str, tuple[str, ...]]]:
     """Return what can be tuned of a method, with its words; De Bonet's thresholds first."""
-    from texlab_core.methods.de_bonet.method import DeBonetParams
+    from texlab_core.methods.de_bonet.params import DeBonetParams
 
     params = find_method(method).params
     numbers = [each for each in describe(params) if each.kind in ("int", "float")]

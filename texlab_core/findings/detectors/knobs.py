@@ -8,7 +8,7 @@ import numpy as np
 
 from texlab_core.findings.finding import Remedy, Where
 from texlab_core.findings.registry import Case, Detector, Seen, register
-from texlab_core.methods.efros_leung.method import EfrosLeungParams
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 from texlab_core.methods.efros_leung.windows import effective_tau
 
 if TYPE_CHECKING:
