@@ -48,7 +48,7 @@ def test_column_commands_are_declared_once(explorer: Explorer) -> None:
 
 def test_the_memory_is_told_again_and_again(explorer: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:
     sizes = iter(["100 MB", "2000 MB"])
-    monkeypatch.setattr("texlab.app.explorer.memory_text", lambda: next(sizes))
+    monkeypatch.setattr("texlab.app.explorer.memory_text", lambda used: next(sizes))
     assert explorer._memory.isActive()
     assert not explorer._memory.isSingleShot()
     for expected in ("100 MB", "2000 MB"):
@@ -57,9 +57,8 @@ def test_the_memory_is_told_again_and_again(explorer: Explorer, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("pages", [0, 256, 512])
-def test_memory_is_counted_in_megabytes(pages: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("texlab.app.memory.memory_bytes", lambda: pages * 4096)
-    assert memory_text() == f"{pages // 256} MB"
+def test_memory_is_counted_in_megabytes(pages: int) -> None:
+    assert memory_text(pages * 4096) == f"{pages // 256} MB"
 
 
 def test_one_change_is_shown_once(explorer: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:

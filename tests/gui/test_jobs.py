@@ -334,3 +334,20 @@ def test_all_is_idle_only_after_the_last_errand(qtbot: Any) -> None:
     qtbot.waitUntil(lambda: bool(idle))
     assert (idle, errands.busy) == ([()], False)
     errands.close()
+
+
+def test_the_thread_comes_with_the_first_request(qtbot: Any, make_worker: Any) -> None:
+    names = {each.name for each in threading.enumerate()}
+    (worker, told), (unused, _) = make_worker(), make_worker()
+    assert {each.name for each in threading.enumerate()} <= names
+    assert worker.ended
+    worker.cancel()
+    assert told == []
+    worker.submit(lambda task: 7)
+    qtbot.waitUntil(lambda: told == [("finished", 7)])
+    assert not worker.ended
+    # One that nobody ever asked ends as well, and takes nothing more.
+    unused.finish()
+    unused.close()
+    unused.submit(lambda task: pytest.fail("It was closed."))
+    assert unused.ended

@@ -46,11 +46,11 @@ def test_it_is_done_at_rest_and_only_when_there_is_more_than_before(
 
     def look(*idle: bool) -> None:
         for each in idle:
-            thrift.look(idle=each)
+            thrift.look(used[0], idle=each)
 
     try:
         look(True, False, True, False, True)
-        assert thrift._worker is None
+        assert thrift._worker.generation == 0
         with qtbot.waitSignal(thrift.changed):
             look(True)
         assert given == [used[0]]
@@ -66,12 +66,11 @@ def test_it_is_done_at_rest_and_only_when_there_is_more_than_before(
         thrift.close()
 
 
-def test_where_the_size_is_not_known_nothing_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "memory_bytes", lambda: None)
+def test_where_the_size_is_not_known_nothing_is_done(qapp: Any) -> None:
     thrift = Thrift()
     for _ in range(3):
-        thrift.look(idle=True)
-    assert thrift._worker is None
+        thrift.look(None, idle=True)
+    assert thrift._worker.generation == 0
 
 
 def test_large_filters_are_let_go_of_the_oldest_first(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QTimer
 
 from texlab.app.crash import CrashHandler
-from texlab.app.memory import Thrift, memory_text
+from texlab.app.memory import Thrift, memory_bytes, memory_text
 from texlab.columns.apart import places_from_json, places_to_json
 from texlab.columns.overlays import Overlays
 from texlab.columns.workspace import Workspace
@@ -249,8 +249,9 @@ class Explorer(QObject):
         self.tabs.close()
 
     def _look_at_memory(self) -> None:
-        self.window.memory_label.setText(memory_text())
-        self._thrift.look(idle=self.idle)
+        used = memory_bytes()
+        self.window.memory_label.setText(memory_text(used))
+        self._thrift.look(used, idle=self.idle)
 
     @property
     def docks(self) -> list[Dock]:

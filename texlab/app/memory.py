@@ -6,13 +6,10 @@ import ctypes
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from texlab.runs.late_worker import LateWorker
+from PySide6.QtCore import QObject, Signal
+
 from texlab.runs.worker import Worker
-
-if TYPE_CHECKING:
-    from PySide6.QtCore import QObject
 
 # Less than this is not worth the milliseconds in which nobody else gets memory.
 STEP_BYTES = 24 * 2**20
@@ -29,9 +26,8 @@ def memory_bytes() -> int | None:
         return None
 
 
-def memory_text() -> str:
-    """Return the resident size for the status bar."""
-    size = memory_bytes()
+def memory_text(size: int | None) -> str:
+    """Return a resident size for the status bar."""
     return "" if size is None else f"{size / 2**20:.0f} MB"
 
 
@@ -47,25 +43,35 @@ def give_back() -> None:
             return
 
 
-class Thrift(LateWorker):
-    """Gives memory back, in its own thread, once the program has rested for a while with more than before."""
+class Thrift(QObject):
+    """Gives memory back, in its own thread, once the program has rested for a while with more than before.
+
+    ``changed()`` when it was given.
+    """
+
+    changed = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._rested = False
         self._least = 0
+        self._worker = Worker("memory", parent=self)
+        self._worker.finished.connect(lambda _: self._gave())
 
-    def look(self, *, idle: bool) -> None:
-        """See what is used now; the program was at rest when that was said twice."""
+    def look(self, used: int | None, *, idle: bool) -> None:
+        """See what is used now, in bytes; the program was at rest when that was said twice."""
         rested, self._rested = self._rested and idle, idle
-        used = memory_bytes()
-        if used is None or not rested or used < self._least + STEP_BYTES:
-            return
-        if self._worker is None:
-            self._worker = Worker("memory", parent=self)
-            self._worker.finished.connect(lambda _: self._gave())
-        if not self._worker.busy:
+        grown = used is not None and used >= self._least + STEP_BYTES
+        if rested and grown and not self._worker.busy:
             self._worker.submit(lambda task: give_back())
+
+    def leave(self) -> None:
+        """Ask the thread to end, without waiting."""
+        self._worker.leave()
+
+    def close(self) -> None:
+        """Stop the thread and wait for its end."""
+        self._worker.close()
 
     def _gave(self) -> None:
         self._least = memory_bytes() or 0

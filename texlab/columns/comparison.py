@@ -38,15 +38,12 @@ class Comparison(PairLayer):
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(self._submit, parent)
-        self._worker: Worker | None = None
+        self._worker = Worker("comparison", parent=self)
+        self._worker.finished.connect(self._came)
 
     def close(self) -> None:
         """Stop and join the thread."""
-        if self._worker is not None:
-            self._worker.close()
+        self._worker.close()
 
     def _submit(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
-        if self._worker is None:
-            self._worker = Worker("comparison", parent=self)
-            self._worker.finished.connect(done)
         self._worker.submit(lambda task: work())

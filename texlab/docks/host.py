@@ -55,8 +55,9 @@ class DockHost(QObject):
         # How the controls stand in a dock that was just made, and how they were wanted before.
         self._first: dict[str, Setting] = {}
         self._wanted: dict[str, Any] = {}
-        self._worker: Worker | None = None
-        self._slots = slots
+        self._worker = Worker(self.name, slots, self)
+        self._worker.finished.connect(self._answered)
+        self._worker.failed.connect(self._refused)
         self._scene: Scene | None = None
         self._asked: tuple[Any, ...] | None = None
         self._computing = False
@@ -167,15 +168,13 @@ class DockHost(QObject):
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
-        if self._worker is not None:
-            self._worker.leave()
+        self._worker.leave()
 
     def close(self) -> None:
         """Stop and join the thread."""
         self._rest.stop()
         self._look.stop()
-        if self._worker is not None:
-            self._worker.close()
+        self._worker.close()
 
     @property
     def busy(self) -> bool:
@@ -231,11 +230,6 @@ class DockHost(QObject):
         self._ask(question)
 
     def _ask(self, question: Question) -> None:
-        if self._worker is None:
-            self._worker = Worker(self.name, self._slots, self)
-            self._worker.finished.connect(self._answered)
-            self._worker.failed.connect(self._refused)
-
         def work(task: Task) -> Any:
             return question.compute(task.should_stop)
 
@@ -245,7 +239,7 @@ class DockHost(QObject):
 
     def _drop(self) -> None:
         """Forget a question under way: it is asked anew when the dock is seen again."""
-        if self._worker is not None and self._computing:
+        if self._computing:
             self._worker.cancel()
             self._asked, self._computing, self._dirty = None, False, False
 

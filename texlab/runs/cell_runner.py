@@ -7,8 +7,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from texlab.runs.late_worker import LateWorker
-from texlab.runs.worker import Worker
+from texlab.runs.scene_runner import SceneRunner
 from texlab_core.errors import InputError
 from texlab_core.warming import Need
 
@@ -73,8 +72,8 @@ class Teller:
         return CellsMade(tuple(self._made), 1.0, self._more | more)
 
 
-class CellRunner(LateWorker):
-    """Runs what was asked for last instead of what ran before; ``changed()`` tells that ``scene`` is another one.
+class CellRunner(SceneRunner):
+    """Runs the cells that were asked for last; see :class:`SceneRunner`.
 
     Parameters
     ----------
@@ -89,11 +88,14 @@ class CellRunner(LateWorker):
     def __init__(
         self, name: str, scene: CellsScene, slots: Slots, warmth: Warmth, parent: QObject | None = None
     ) -> None:
-        super().__init__(parent)
-        self.scene = scene
-        self._name = name
+        # Every cell takes a place of its own.
+        super().__init__(name, scene, None, parent)
         self._slots = slots
         self._warmth = warmth
+        self._worker.progressed.connect(self._progressed)
+        self._worker.finished.connect(lambda made: self._progressed(made, status="finished"))
+        self._worker.failed.connect(lambda sentence: self._show(status="failed", problem=sentence))
+        self._worker.cancelled.connect(lambda: self._show(status="stopped"))
 
     def _begin(
         self,
@@ -116,23 +118,9 @@ class CellRunner(LateWorker):
         self.scene = dataclasses.replace(
             scene, number=self.scene.number + 1, column_id=column_id, status="running"
         )
-        if self._worker is None:
-            self._worker = self._make_worker()
         need, warmth = Need(column.method, exemplar.channels), self._warmth
         self._worker.submit(request, first=lambda task: warmth.wait(need, task.should_stop))
         self.changed.emit()
 
-    def _make_worker(self) -> Worker:
-        worker = Worker(self._name, parent=self)
-        worker.progressed.connect(self._progressed)
-        worker.finished.connect(lambda made: self._progressed(made, status="finished"))
-        worker.failed.connect(lambda sentence: self._show(status="failed", problem=sentence))
-        worker.cancelled.connect(lambda: self._show(status="stopped"))
-        return worker
-
     def _progressed(self, made: CellsMade, **more: Any) -> None:
         self._show(cells=made.cells, fraction=made.fraction, **made.more, **more)
-
-    def _show(self, **changes: Any) -> None:
-        self.scene = dataclasses.replace(self.scene, **changes)
-        self.changed.emit()

@@ -83,8 +83,7 @@ class Controller(QObject):
         self._errands.changed.connect(lambda: self.errands_changed.emit(self._errands.names))
         self._warming = Worker("warming", parent=self)
         self._warming.submit(lambda task: self.warmth.serve())
-        # Made when there is something to write.
-        self._writer: Worker | None = None
+        self._writer = Worker("results", parent=self)
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
@@ -380,8 +379,7 @@ class Controller(QObject):
         self._runners.clear()
         self._leaving.clear()
         self._write_results()
-        if self._writer is not None:
-            self._writer.finish()
+        self._writer.finish()
 
     def _threads(
         self,
@@ -493,11 +491,8 @@ class Controller(QObject):
     def _write_results(self) -> None:
         """Take to the disk what has been finished and measured."""
         kept = self._shared.kept
-        if not kept.unwritten:
-            return
-        if self._writer is None:
-            self._writer = Worker("results", parent=self)
-        self._writer.submit(lambda task: kept.write(), patient=True)
+        if kept.unwritten:
+            self._writer.submit(lambda task: kept.write(), patient=True)
 
     def _announce(self) -> None:
         self._write_results()

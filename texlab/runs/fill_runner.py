@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab.runs.late_worker import LateWorker
-from texlab.runs.worker import Worker
+from texlab.runs.scene_runner import SceneRunner
 from texlab.state.filling import FillScene
 from texlab.style.pictures import Picture, to_picture
 from texlab_core.engine.run import run
@@ -68,20 +66,22 @@ class FillRun:
         return filled_of(result, self.plan.box)
 
 
-class FillRunner(LateWorker):
-    """Runs one fill, the newest instead of any other; ``changed()`` tells that ``scene`` is another one."""
+class FillRunner(SceneRunner):
+    """Runs one fill, the newest instead of any other."""
+
+    scene: FillScene
 
     def __init__(self, slots: Slots, warmth: Warmth, parent: QObject | None = None) -> None:
-        super().__init__(parent)
-        self.scene = FillScene()
-        self._slots = slots
+        super().__init__("fill", FillScene(), slots, parent)
         self._warmth = warmth
+        self._worker.progressed.connect(self._progressed)
+        self._worker.finished.connect(lambda found: self._show(status="finished", fraction=1.0, found=found))
+        self._worker.failed.connect(lambda sentence: self._show(status="failed", message=sentence, preview=None))
+        self._worker.cancelled.connect(lambda: self._show(status="stopped", preview=None))
 
     def start(self, plan: FillPlan) -> None:
         """Fill."""
         self.scene = FillScene(plan, "running", 0.0, "waiting")
-        if self._worker is None:
-            self._worker = self._make_worker()
         needs, warmth = [Need("efros-leung", channels) for channels in (1, 3)], self._warmth
 
         def first(task: TaskLike) -> None:
@@ -96,18 +96,6 @@ class FillRunner(LateWorker):
         """Whether it fills."""
         return self.scene.status == "running"
 
-    def _make_worker(self) -> Worker:
-        worker = Worker("fill", self._slots, parent=self)
-        worker.progressed.connect(self._progressed)
-        worker.finished.connect(lambda found: self._show(status="finished", fraction=1.0, found=found))
-        worker.failed.connect(lambda sentence: self._show(status="failed", message=sentence, preview=None))
-        worker.cancelled.connect(lambda: self._show(status="stopped", preview=None))
-        return worker
-
     def _progressed(self, report: FillProgress) -> None:
         preview = self.scene.preview if report.preview is None else report.preview
         self._show(fraction=report.fraction, message=report.message, preview=preview)
-
-    def _show(self, **changes: Any) -> None:
-        self.scene = dataclasses.replace(self.scene, **changes)
-        self.changed.emit()

@@ -77,7 +77,10 @@ class _Asked:
 
 
 class Worker(QObject):
-    """One thread with a one-slot mailbox. All signals arrive in the thread that made the worker."""
+    """One thread with a one-slot mailbox. All signals arrive in the thread that made the worker.
+
+    The thread starts with the first request: most sessions never ask for most of what there is.
+    """
 
     started = Signal(int)
     progressed = Signal(object)
@@ -114,7 +117,6 @@ class Worker(QObject):
         self._progress: tuple[int, object] | None = None
         self._event.connect(self._receive)
         self._thread = threading.Thread(target=self._work, name=f"texlab-{name}", daemon=True)
-        self._thread.start()
 
     @property
     def generation(self) -> int:
@@ -159,6 +161,8 @@ class Worker(QObject):
                 self._oldest = self._newest
             self._request = _Asked(request, first, rank)
             self._owes = True
+            if not (self._started or self._closing or self._ending):
+                self._thread.start()
             self._mail.notify()
         if self._slots is not None:
             self._slots.wake()
@@ -188,14 +192,18 @@ class Worker(QObject):
             self._slots.wake()
 
     @property
+    def _started(self) -> bool:
+        return self._thread.ident is not None
+
+    @property
     def ended(self) -> bool:
-        """Whether the thread has ended."""
+        """Whether the thread has ended, or was never needed."""
         return not self._thread.is_alive()
 
     def close(self, timeout_s: float = 5.0) -> None:
         """Stop the thread and wait for its end."""
         self.leave()
-        self._thread.join(timeout_s)
+        self._join(timeout_s)
         if self._thread.is_alive():
             log.error("%s did not end within %.0f s.", self._thread.name, timeout_s)
 
@@ -204,8 +212,12 @@ class Worker(QObject):
         with self._mail:
             self._ending = True
             self._mail.notify()
-        self._thread.join(timeout_s)
+        self._join(timeout_s)
         self.close(0.0)
+
+    def _join(self, timeout_s: float) -> None:
+        if self._started:
+            self._thread.join(timeout_s)
 
     # The thread's side.
 

@@ -33,7 +33,7 @@ class BatchDesk(RunDesk):
         if self.dialog is None:
             self.dialog = BatchDialog(self._window)
             self.dialog.asked.connect(self._run)
-            self.dialog.stopped.connect(self._stop)
+            self._connect(self.dialog, self.dialog.show_progress, self.dialog.show_result)
             self.dialog.page_wanted.connect(lambda page: QDesktopServices.openUrl(QUrl.fromLocalFile(page)))
         self._show(self.dialog)
 
@@ -41,7 +41,7 @@ class BatchDesk(RunDesk):
         dialog = self.dialog
         assert dialog is not None
         data = None if asked.plan else plan_data(asked, self._session)
-        self._submit(dialog, lambda task: run_request(task, asked, data), dialog.show_progress, dialog.show_result)
+        self._submit(dialog, lambda task: run_request(task, asked, data))
 
 
 def plan_data(asked: BatchRequest, session: Session) -> dict[str, Any]:

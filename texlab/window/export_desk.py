@@ -48,7 +48,7 @@ class ExportDesk(RunDesk):
             self.dialog = ExportDialog(self._window)
             self.dialog.asked.connect(self._run)
             self.dialog.edited.connect(self._foresee)
-            self.dialog.stopped.connect(self._stop)
+            self._connect(self.dialog, self.dialog.show_share, self._done)
             self.dialog.folder_wanted.connect(self._show_folder)
             self.dialog.path_wanted.connect(self._copy_path)
         session = self._controller.session
@@ -90,7 +90,7 @@ class ExportDesk(RunDesk):
             return
         folder = asked.out if asked.kind == "files" else str(Path(asked.out).parent)
         self._settings.values["save-folder"] = folder
-        self._submit(dialog, lambda task: carry_out(asked, items, task), dialog.show_share, self._done)
+        self._submit(dialog, lambda task: carry_out(asked, items, task))
 
     def _done(self, written: tuple[Path, ...]) -> None:
         assert self.dialog is not None

@@ -44,14 +44,16 @@ class PopoutDesk:
         self.dialog: PopoutDialog | None = None
         self.record: Record | None = None
         self._name = ""
-        self._maker: Worker | None = None
+        self._maker = Worker("popout", parent=window)
+        self._maker.finished.connect(self._give)
         # One thread writes every answer in turn; a newer record holds all that an older one does.
-        self._keeper: Worker | None = None
+        self._keeper = Worker("popout-answers", parent=window)
+        self._keeper.failed.connect(self._not_kept)
 
     @property
     def busy(self) -> bool:
         """Whether pictures are made or answers are written."""
-        return any(each is not None and each.busy for each in (self._maker, self._keeper))
+        return self._maker.busy or self._keeper.busy
 
     def open(self) -> None:
         """Show the dialog over the whole window, with the columns that there are now."""
@@ -59,7 +61,10 @@ class PopoutDesk:
             dialog = self.dialog = PopoutDialog(self._window)
             dialog.edited.connect(self._foresee)
             dialog.asked.connect(self._make)
-            dialog.stopped.connect(self._stop)
+            dialog.stopped.connect(self._maker.cancel)
+            self._maker.progressed.connect(dialog.show_progress)
+            self._maker.failed.connect(lambda sentence: dialog.show_setup(sentence))
+            self._maker.cancelled.connect(partial(dialog.show_setup, "Stopped."))
             dialog.answered.connect(self._keep)
             dialog.over.connect(self._end)
             dialog.table_wanted.connect(self._ask_table)
@@ -80,12 +85,9 @@ class PopoutDesk:
         """Stop what is made, and wait until every answer is written."""
         if self.dialog is not None:
             self.dialog.close()
-        if self._maker is not None:
-            self._maker.close(PATIENCE_S)
-        if self._keeper is not None:
-            # The last answer is worth waiting for.
-            self._keeper.finish(PATIENCE_S)
-        self._maker = self._keeper = None
+        self._maker.close(PATIENCE_S)
+        # The last answer is worth waiting for.
+        self._keeper.finish(PATIENCE_S)
 
     def design(self, asked: PopoutRequest) -> Design:
         """Return the test that a request stands for; raises ``InputError`` when it cannot be."""
@@ -132,18 +134,8 @@ class PopoutDesk:
         except InputError as error:
             dialog.show_foreseen(str(error), sound=False)
             return
-        if self._maker is None:
-            self._maker = Worker("popout", parent=self._window)
-            self._maker.progressed.connect(dialog.show_progress)
-            self._maker.finished.connect(self._give)
-            self._maker.failed.connect(lambda sentence: dialog.show_setup(sentence))
-            self._maker.cancelled.connect(partial(dialog.show_setup, "Stopped."))
         dialog.show_making()
         self._maker.submit(partial(make_pictures, design))
-
-    def _stop(self) -> None:
-        if self._maker is not None:
-            self._maker.cancel()
 
     def _give(self, made: Made) -> None:
         assert self.dialog is not None
@@ -155,9 +147,6 @@ class PopoutDesk:
         assert self.record is not None
         assert self.dialog is not None
         self.record = record = self.record.answered(answer)
-        if self._keeper is None:
-            self._keeper = Worker("popout-answers", parent=self._window)
-            self._keeper.failed.connect(self._not_kept)
         name, store = self._name, self.store
         self._keeper.submit(lambda _: store.save(name, record), patient=True)
 

@@ -151,20 +151,17 @@ class RunDesk:
 
     def __init__(self, window: MainWindow, name: str, stopped: str) -> None:
         self._window = window
-        self._name = name
         self._stopped = stopped
-        self._worker: Worker | None = None
+        self._worker = Worker(name, parent=window)
 
     @property
     def busy(self) -> bool:
         """Whether anything runs."""
-        return self._worker is not None and self._worker.busy
+        return self._worker.busy
 
     def close(self) -> None:
         """Stop what runs, and wait for its end."""
-        if self._worker is not None:
-            self._worker.close(PATIENCE_S)
-            self._worker = None
+        self._worker.close(PATIENCE_S)
         if self.dialog is not None:
             self.dialog.close()
 
@@ -172,22 +169,14 @@ class RunDesk:
         dialog.show()
         dialog.raise_()
 
-    def _submit(
-        self,
-        dialog: RunDialog,
-        request: Request,
-        progressed: Callable[..., None],
-        finished: Callable[..., None],
-    ) -> None:
-        if self._worker is None:
-            self._worker = Worker(self._name, parent=self._window)
-            self._worker.progressed.connect(progressed)
-            self._worker.finished.connect(finished)
-            self._worker.failed.connect(dialog.show_idle)
-            self._worker.cancelled.connect(partial(dialog.show_idle, self._stopped))
+    def _connect(self, dialog: RunDialog, progressed: Callable[..., None], finished: Callable[..., None]) -> None:
+        """Let a new dialog show what runs, and stop it."""
+        self._worker.progressed.connect(progressed)
+        self._worker.finished.connect(finished)
+        self._worker.failed.connect(dialog.show_idle)
+        self._worker.cancelled.connect(partial(dialog.show_idle, self._stopped))
+        dialog.stopped.connect(self._worker.cancel)
+
+    def _submit(self, dialog: RunDialog, request: Request) -> None:
         dialog.show_running()
         self._worker.submit(request)
-
-    def _stop(self) -> None:
-        if self._worker is not None:
-            self._worker.cancel()
