@@ -10,7 +10,8 @@ import pytest
 
 from tests.stub_method import StubParams, analyses, exemplar, stub  # noqa: F401
 from texlab.runs.column_run import BROKEN, Drafted, Finished, Measured, Progress, Waits
-from texlab.runs.column_runner import MEASURING_SHARE, OVERDUE_S, ColumnRunner, Shared
+from texlab.runs.column_runner import ColumnRunner, Shared
+from texlab.runs.measurer import MEASURING_SHARE, OVERDUE_S
 from texlab.runs.slots import Rank, Slots
 from texlab.runs.sweep_run import SweepRun, sweep_of
 from texlab.runs.worker import Worker
@@ -46,8 +47,8 @@ def runner(qapp: Any) -> Any:
     made = ColumnRunner(COLUMN, Shared(Slots(1), AnalysisCache(), Warmth()))
     made.worker.close()
     made.worker = Idle()  # type: ignore[assignment]
-    made.measurer.close()
-    made.measurer = Idle()  # type: ignore[assignment]
+    made.measurer.worker.close()
+    made.measurer.worker = Idle()  # type: ignore[assignment]
     return made
 
 
@@ -113,14 +114,14 @@ def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
     start(runner)
     first, second = finished((96, 128), 0.01), finished((96, 128), 0.02, draft=True)
     runner._finished(first)
-    runner._measures_came(Measured({"d": 1.0}, (96, 128)))
+    runner.measurer._finished(Measured({"d": 1.0}, (96, 128)))
     start(runner, draft=True)
     runner._finished(second)
     # The newer picture is shown with the numbers of the one before, until it has its own.
     assert (runner.scene.result, dict(runner.scene.measures)) == (second.result, {"d": 1.0})
     assert len(runner._shared.points.points) == 1
-    runner._measure_next()
-    runner._measures_came(Measured({"d": 2.0}, (96, 128)))
+    runner.measurer._measure_next()
+    runner.measurer._finished(Measured({"d": 2.0}, (96, 128)))
     points = runner._shared.points.points
     assert [each.cell.measures for each in points] == [{"d": 1.0}, {"d": 2.0}]
     assert [each.cell.job.key for each in points] == [each.result.job.key for each in (first, second)]
@@ -128,22 +129,22 @@ def test_a_point_has_the_numbers_of_its_own_picture(runner: Any) -> None:
 
 def test_a_picture_of_a_drag_is_measured_when_no_other_follows(runner: Any, monkeypatch: Any) -> None:
     now = [100.0]
-    monkeypatch.setattr("texlab.runs.column_runner.time.monotonic", lambda: now[0])
-    measured: list[Any] = runner.measurer.asked
+    monkeypatch.setattr("texlab.runs.measurer.time.monotonic", lambda: now[0])
+    measured: list[Any] = runner.measurer.worker.asked
     start(runner)
     runner._finished(finished((96, 128), 0.01))
     assert len(measured) == 1
-    runner._measures_came(Measured({"d": 1.0}, (96, 128)))
+    runner.measurer._finished(Measured({"d": 1.0}, (96, 128)))
     for number in range(5):
         now[0] += 0.016
         start(runner, draft=True)
         runner._finished(finished((96, 128), 0.02 + number / 100, draft=True))
         # The next event comes soon: no core is taken from its picture.
         assert (len(measured), runner.measuring) == (1, True)
-    runner._rest.timeout.emit()
+    runner.measurer._rest.timeout.emit()
     assert len(measured) == 2
     now[0] += 0.1
-    runner._measures_came(Measured({"d": 2.0}, (96, 128)))
+    runner.measurer._finished(Measured({"d": 2.0}, (96, 128)))
     assert not runner.measuring
     # Numbers that take 100 ms are made every two seconds, so that pictures have nearly all of the time.
     for after, count in ((OVERDUE_S, 2), (0.1 / MEASURING_SHARE, 3)):
@@ -196,7 +197,7 @@ def test_a_picture_that_cannot_be_measured_stays(runner: Any, caplog: pytest.Log
     end = finished((96, 128), 0.01)
     runner._finished(end)
     assert runner.measuring
-    runner._measuring_failed("There is not enough memory for this size.")
+    runner.measurer._failed("There is not enough memory for this size.")
     assert (runner.scene.status, runner.scene.result, runner.measuring) == ("finished", end.result, False)
     assert runner.scene.unexamined == BROKEN
     assert "could not be measured: There is not enough memory" in caplog.text
@@ -232,7 +233,11 @@ def test_the_cells_of_a_sweep_share_their_analysis(qapp: Any) -> None:
 def test_the_worker_is_the_columns_own(qapp: Any) -> None:
     made = ColumnRunner(COLUMN, Shared(Slots(1), AnalysisCache(), Warmth()))
     assert isinstance(made.worker, Worker)
-    assert not made.ended
+    # Threads come with what they are asked for.
+    assert made.ended
+    for worker in (made.worker, made.measurer.worker):
+        worker.submit(lambda task: None)
+        assert not made.ended
     made.leave()
     made.close()
     assert made.ended

@@ -80,13 +80,13 @@ def test_no_picture_waits_for_numbers_and_old_ones_are_renewed(qtbot, bench, mon
         qtbot.waitUntil(lambda: controller.column_scene(1).result.job.params.level == level, timeout=PATIENCE_MS)
 
     # Numbers that are new enough make way.
-    runner._measured_s = time.monotonic() + 1e6
+    runner.measurer._last_s = time.monotonic() + 1e6
     drag(2.0)
     qtbot.waitUntil(lambda: begun.acquire(blocking=False), timeout=PATIENCE_MS)
     drag(2.5)
     qtbot.waitUntil(lambda: begun.acquire(blocking=False), timeout=PATIENCE_MS)
     # Old ones are made beside the next pictures.
-    runner._measured_s = 0.0
+    runner.measurer._last_s = 0.0
     points = len(controller.scene().points)
     drag(3.2)
     drag(3.6)

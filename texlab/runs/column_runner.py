@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import logging
 import math
-import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.column_run import (
     BROKEN,
@@ -29,9 +27,10 @@ from texlab.runs.column_run import (
 from texlab.runs.drafts import draft_size
 from texlab.runs.kept_points import KeptPoints
 from texlab.runs.kept_results import KeptResults
+from texlab.runs.measurer import Measurer
 from texlab.runs.past import measured, past_of, remembered
 from texlab.runs.slots import Rank, Slots
-from texlab.runs.worker import BEHIND_PICTURES, Worker
+from texlab.runs.worker import Worker
 from texlab.state.scene import ColumnScene
 from texlab_core.engine.registry import find_method
 from texlab_core.measures.subject import PreparedCache
@@ -46,8 +45,6 @@ if TYPE_CHECKING:
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
 
-log = logging.getLogger(__name__)
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Shared:
@@ -59,14 +56,6 @@ class Shared:
     prepared: PreparedCache = dataclasses.field(default_factory=PreparedCache)
     kept: KeptResults = dataclasses.field(default_factory=KeptResults)
     points: KeptPoints = dataclasses.field(default_factory=KeptPoints)
-
-
-# While a control is dragged, numbers that are older than this are made beside the next pictures,
-OVERDUE_S = 0.7
-# but no more often than that measuring takes this share of the time.
-MEASURING_SHARE = 0.05
-# A draft is measured when the next event does not come within this: it would take a core from its picture.
-REST_MS = 60
 
 
 class ColumnRunner(QObject):
@@ -90,15 +79,6 @@ class ColumnRunner(QObject):
         self._run: ColumnRun | None = None
         self._kept: Keep | None = None
         self._exemplar: ImageInput | None = None
-        # What is measured, what is to be measured next, and when numbers came last.
-        self._measured: MeasureRun | None = None
-        self._unmeasured: MeasureRun | None = None
-        self._measured_s = 0.0
-        self._measuring_since_s = self._measuring_took_s = 0.0
-        self._rest = QTimer(self)
-        self._rest.setSingleShot(True)
-        self._rest.setInterval(REST_MS)
-        self._rest.timeout.connect(self._measure_next)
         # Method and exemplar of the newest job.
         self._origin: tuple[str, str] | None = None
         self.worker = Worker(f"column-{column.id}", shared.slots, self)
@@ -107,11 +87,10 @@ class ColumnRunner(QObject):
         self.worker.finished.connect(self._finished)
         self.worker.failed.connect(self._failed)
         self.worker.cancelled.connect(self._cancelled)
-        # Pictures never wait for numbers.
-        self.measurer = Worker(f"measures-{column.id}", shared.slots, self, niceness=BEHIND_PICTURES)
-        self.measurer.progressed.connect(self._show_measures)
-        self.measurer.finished.connect(self._measures_came)
-        self.measurer.failed.connect(self._measuring_failed)
+        self.measurer = Measurer(f"measures-{column.id}", shared.slots, self)
+        self.measurer.told.connect(self._show_measures)
+        self.measurer.came.connect(self._measures_came)
+        self.measurer.failed.connect(lambda: self._show(unexamined=BROKEN))
 
     def show_stored(self, picture: Picture, measures: Mapping[str, float]) -> None:
         """Show the picture of an earlier result with its numbers until there is another one."""
@@ -137,13 +116,7 @@ class ColumnRunner(QObject):
     @property
     def measuring(self) -> bool:
         """Whether the numbers about the picture are still to come."""
-        return self._measured is not None or self._unmeasured is not None
-
-    @property
-    def _overdue(self) -> bool:
-        """Whether what is shown of the numbers is so old that measuring goes on beside the next pictures."""
-        age = time.monotonic() - self._measured_s
-        return age >= max(OVERDUE_S, self._measuring_took_s / MEASURING_SHARE)
+        return self.measurer.busy
 
     # What it is asked for.
 
@@ -177,8 +150,8 @@ class ColumnRunner(QObject):
         # Within a drag every picture is finished, or none would be while the events come faster than they.
         patient, self.drafted = draft and self.drafted, draft
         self._exemplar = exemplar
-        if not (draft and self._overdue):
-            self._stop_measuring()
+        if not (draft and self.measurer.overdue):
+            self.measurer.stop()
         self._live = draft and size is None and self.scene.status == "finished"
         self._announce(column, small=size is not None)
         make_job = partial(
@@ -246,7 +219,7 @@ class ColumnRunner(QObject):
     def await_exemplar(self, coming: bool) -> None:
         """Stop because of another exemplar; the column waits for it, or is idle when there is none."""
         self.worker.cancel()
-        self._stop_measuring()
+        self.measurer.stop()
         self._show(status="waiting" if coming else "idle", message="", result=None)
 
     def has_finished(self, column: Column, state: State, exemplar: ImageInput) -> bool:
@@ -256,7 +229,7 @@ class ColumnRunner(QObject):
     def hold(self, column: Column, size: tuple[int, ...], sentence: str) -> None:
         """Take a column's settings, and say what its run would take; it starts when the user asks for it."""
         self.worker.cancel()
-        self._stop_measuring()
+        self.measurer.stop()
         self._full = size
         self._announce(column, small=False)
         self._show(status="idle", message=sentence, result=None, draft=False)
@@ -274,7 +247,6 @@ class ColumnRunner(QObject):
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
-        self._rest.stop()
         self.worker.leave()
         self.measurer.leave()
 
@@ -312,20 +284,15 @@ class ColumnRunner(QObject):
         self._came(end)
         if self._known(end) is not None:
             # The same bits have the same numbers.
-            self._stop_measuring()
+            self.measurer.stop()
             self._shared.points.note(self.scene)
             return
-        if self._exemplar is None or (self.worker.behind and not self._overdue):
+        if self._exemplar is None or (self.worker.behind and not self.measurer.overdue):
             return
         result, image = (None, end.image) if isinstance(end, Drafted) else (end.result, end.result.image)
         quick = self.scene.draft or self.drafted
-        self._unmeasured = MeasureRun(image, self._exemplar, result, self._shared.prepared, quick)
-        if self._measured is not None:
-            return
-        if self.drafted and not self._overdue:
-            self._rest.start()
-        else:
-            self._measure_next()
+        run = MeasureRun(image, self._exemplar, result, self._shared.prepared, quick)
+        self.measurer.measure(run, dragged=self.drafted)
 
     # Numbers about the picture.
 
@@ -335,41 +302,19 @@ class ColumnRunner(QObject):
             return None
         return self._shared.kept.measured(end.result.job.key)
 
-    def _measure_next(self) -> None:
-        self._rest.stop()
-        self._measured, self._unmeasured = self._unmeasured, None
-        if self._measured is not None:
-            self._measuring_since_s = time.monotonic()
-            self.measurer.submit(self._measured)
-
-    def _stop_measuring(self) -> None:
-        self._rest.stop()
-        self._measured = self._unmeasured = None
-        self.measurer.cancel()
-
     def _measures_came(self, end: Measured) -> None:
-        run = self._measured
-        self._measured_s = time.monotonic()
-        # What is no draft is measured thoroughly, which says nothing of how long the quick numbers take.
-        quick = run is not None and run.draft
-        self._measuring_took_s = self._measured_s - self._measuring_since_s if quick else 0.0
+        run = self.measurer.present
         if run is not None and run.result is not None and not run.draft:
             self._shared.kept.note(run.result.job.key, end)
         history = self.scene.history
         if not self.scene.draft and self.scene.result is not None:
             history = measured(history, self.scene.result.job.key, end.measures)
         self._show_measures(end, findings=end.findings, unexamined=end.unexamined, history=history)
-        self._measure_next()
-
-    def _measuring_failed(self, sentence: str) -> None:
-        # The picture is there all the same.
-        log.warning("A picture could not be measured: %s", sentence)
-        self._show(unexamined=BROKEN)
-        self._measure_next()
 
     def _show_measures(self, found: Measured, **more: Any) -> None:
         # While a control is dragged they may be about the picture before: shown, but kept of none.
-        same = self._measured is not None and self._measured.image is self.scene.image
+        run = self.measurer.present
+        same = run is not None and run.image is self.scene.image
         self._show(measures=found.measures, measured_size=found.size, **(more if same else {}))
         if same:
             self._shared.points.note(self.scene)
