@@ -178,10 +178,10 @@ def test_sixty_slider_events(qtbot: Any, tmp_path: Any) -> None:
         for _ in range(3):
             for number in range(60):
                 value = 1 + number % 20
-                controller.edit_params(column.id, column.params.replace(iterations=value), "iterations", False)
+                controller.editing.params(column.id, column.params.replace(iterations=value), "iterations", False)
                 lateness(qtbot, 15)
             began = time.perf_counter()
-            controller.edit_params(column.id, column.params.replace(iterations=5), "iterations", True)
+            controller.editing.params(column.id, column.params.replace(iterations=5), "iterations", True)
             qtbot.waitUntil(lambda: explorer.idle, timeout=60_000)
             rest = time.perf_counter() - began
             shown = controller.column_scene(column.id)

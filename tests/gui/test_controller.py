@@ -41,17 +41,17 @@ def wait(qtbot: Any, controller: Controller) -> None:
 
 
 def test_a_pinned_pixel_stays_until_it_is_pinned_again(controller: Controller) -> None:
-    controller.point_at(1, 3, 4)
+    controller.pointing.point_at(1, 3, 4)
     assert controller.scene().probe == Probe(1, 3, 4)
-    controller.pin(1, 5, 6)
-    controller.point_at(2, 7, 8)
+    controller.pointing.pin(1, 5, 6)
+    controller.pointing.point_at(2, 7, 8)
     assert controller.scene().probe == Probe(1, 5, 6, pinned=True)
-    controller.pin(1, 5, 7)
+    controller.pointing.pin(1, 5, 7)
     assert controller.scene().probe == Probe(1, 5, 7, pinned=True)
-    controller.pin(1, 5, 7)
+    controller.pointing.pin(1, 5, 7)
     assert controller.scene().probe is None
-    controller.point_at(2, 7, 8)
-    controller.point_at(2, -1, -1)
+    controller.pointing.point_at(2, 7, 8)
+    controller.pointing.point_at(2, -1, -1)
     assert controller.scene().probe is None
 
 
@@ -68,11 +68,11 @@ def test_a_scene_is_the_session_and_what_came_of_it(qtbot: Any, controller: Cont
 
 def test_a_dragged_crop_ends_at_full_size(qtbot: Any, controller: Controller) -> None:
     for left in (1, 2, 3):
-        controller.edit_crop(Crop(0, left, 12, 12), final=False)
+        controller.editing.crop(Crop(0, left, 12, 12), final=False)
     # The last draft is there before the button goes up.
     wait(qtbot, controller)
     assert any(runner.drafted for runner in controller._runners.values())
-    controller.edit_crop(Crop(0, 3, 12, 12), final=True)
+    controller.editing.crop(Crop(0, 3, 12, 12), final=True)
     wait(qtbot, controller)
     for column in controller.scene().columns:
         assert not column.draft
@@ -87,8 +87,8 @@ def test_a_dragged_crop_ends_at_full_size(qtbot: Any, controller: Controller) ->
 
 def test_dragged_parameters_are_one_step(qtbot: Any, controller: Controller) -> None:
     for level in (0.1, 0.2, 0.3):
-        controller.edit_params(1, StubParams(level=level), "level", False)
-    controller.edit_params(1, StubParams(level=0.3), "level", True)
+        controller.editing.params(1, StubParams(level=level), "level", False)
+    controller.editing.params(1, StubParams(level=0.3), "level", True)
     wait(qtbot, controller)
     scene = controller.column_scene(1)
     assert scene is not None

@@ -60,7 +60,7 @@ def test_the_pointer_makes_nothing_but_what_it_changes(
     for step in range(5):
         with qtbot.waitSignal(explorer.presenter.painted):
             QTest.mouseMove(pane.viewport(), middle + QPoint(9 * step, 0))
-    assert explorer.controller.probe is not None
+    assert explorer.controller.pointing.probe is not None
     assert not calls
     # Another column is told to everybody.
     explorer.session.select(ids(explorer)[1])

@@ -61,8 +61,27 @@ class Recorder:
         done(request(SimpleNamespace(should_stop=lambda: "asked")))
         self.orders.append(("once", name))
 
+    @property
+    def editing(self) -> Any:
+        return Part("edit", self.orders)
+
+    @property
+    def pointing(self) -> Any:
+        return Part("point", self.orders)
+
     def __getattr__(self, name: str) -> Any:
         return lambda *args: self.orders.append((name, *args))
+
+
+class Part:
+    """Notes what is asked of a part of the controller."""
+
+    def __init__(self, part: str, orders: list[tuple[Any, ...]]) -> None:
+        self.part = part
+        self.orders = orders
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *args: self.orders.append((f"{self.part}.{name}", *args))
 
 
 class Bench:
@@ -129,15 +148,15 @@ def test_edits_reach_the_controller_as_they_are(bench: Bench) -> None:
     code = (("code", DataInput({}, "code", "0")),)
     bench.do(EditInputs(2, code, "code"))
     assert bench.controller.orders == [
-        ("edit_params", 1, params, "iterations", False),
-        ("edit_inputs", 2, code, "code", True),
+        ("edit.params", 1, params, "iterations", False),
+        ("edit.inputs", 2, code, "code", True),
     ]
 
 
 def test_a_field_is_set_in_what_the_column_has_by_then(bench: Bench) -> None:
     bench.session.set_params(1, HB.params(scales=2), "scales")
     assert bench.do(EditField(1, "iterations", 7)) == [
-        ("edit_params", 1, HB.params(scales=2, iterations=7), "iterations", True)
+        ("edit.params", 1, HB.params(scales=2, iterations=7), "iterations", True)
     ]
     # The column has gone while the hand was still moving.
     assert len(bench.do(EditField(99, "iterations", 7))) == 1
@@ -154,7 +173,7 @@ def test_a_column_gets_another_method_with_its_defaults(bench: Bench) -> None:
 def test_pixels_and_marks(bench: Bench) -> None:
     bench.do(Point(1, 3, 4))
     bench.do(Pin(1, 5, 6))
-    assert bench.controller.orders == [("point_at", 1, 3, 4), ("pin", 1, 5, 6)]
+    assert bench.controller.orders == [("point.point_at", 1, 3, 4), ("point.pin", 1, 5, 6)]
     marks: Any = ("here",)
     bench.do(ShowMarks(marks))
     assert bench.marks == [marks]
@@ -165,7 +184,7 @@ def test_stages_and_pictures_of_tabs(bench: Bench) -> None:
     bench.do(ShowStage(1, frame))
     bench.do(ShowStage(1, None))
     bench.do(TakePicture("pyramid", "drag"))
-    assert bench.controller.orders == [("show_stage", 1, frame), ("show_stage", 1, None)]
+    assert bench.controller.orders == [("point.show_stage", 1, frame), ("point.show_stage", 1, None)]
     assert bench.taken == [("pyramid", "drag")]
 
 

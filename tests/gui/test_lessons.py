@@ -121,7 +121,7 @@ def test_a_step_sets_everything_and_leaving_brings_everything_back(
         assert np.array_equal(result_image(explorer, column), run(job).image)
     assert set(ids(explorer)).isdisjoint(column.id for column in before.columns)
     assert session.selected_id == ids(explorer)[1]
-    probe = explorer.controller.probe
+    probe = explorer.controller.pointing.probe
     assert probe is not None
     assert (probe.column_id, probe.row, probe.column, probe.pinned) == (ids(explorer)[1], 6, 5, True)
     assert explorer.window.front_dock() == "pyramid"

@@ -171,7 +171,7 @@ def test_a_changed_column_does_not_wait_for_the_end_of_the_others(open_window, t
     controller._shared.kept.clear()
     controller.run_all()
     qtbot.waitUntil(lambda: controller.column_scene(first).status == "running")
-    controller.edit_params(second, StubParams(rounds=2, level=1.0), "level", True)
+    controller.editing.params(second, StubParams(rounds=2, level=1.0), "level", True)
     wait_idle(qtbot, explorer)
     # Whether or not the short one had its first turn before the long one began.
     assert ends[-2:] == [second, first]

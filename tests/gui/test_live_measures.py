@@ -76,7 +76,7 @@ def test_no_picture_waits_for_numbers_and_old_ones_are_renewed(qtbot, bench, mon
     def drag(level):
         # As quick as that: no small drafts on a machine that has much to do.
         runner.seconds = 1e-6
-        controller.edit_params(1, StubParams(level=level), "level", False)
+        controller.editing.params(1, StubParams(level=level), "level", False)
         qtbot.waitUntil(lambda: controller.column_scene(1).result.job.params.level == level, timeout=PATIENCE_MS)
 
     # Numbers that are new enough make way.
@@ -108,7 +108,7 @@ def test_a_draft_is_measured_at_its_own_size(qtbot, bench):
     runner = controller._runners[1]
     # The full size is said to take so long that a draft is small.
     runner.seconds = 100.0
-    controller.edit_params(1, StubParams(level=2.0), "level", False)
+    controller.editing.params(1, StubParams(level=2.0), "level", False)
     qtbot.waitUntil(lambda: controller.column_scene(1).draft, timeout=PATIENCE_MS)
     qtbot.waitUntil(lambda: not controller.busy and not controller.measuring, timeout=PATIENCE_MS)
     column = controller.column_scene(1)

@@ -73,9 +73,9 @@ def test_drafts_are_seen_while_the_crop_is_dragged(
     (column,) = ids(explorer)
     crop = explorer.session.state.sample.crop
     moved = type(crop)(crop.top + 1, crop.left, crop.height, crop.width)
-    explorer.controller.edit_crop(moved, False)
+    explorer.controller.editing.crop(moved, False)
     qtbot.waitUntil(lambda: explorer.controller.column_scene(column).draft, timeout=20_000)
-    explorer.controller.edit_crop(moved, True)
+    explorer.controller.editing.crop(moved, True)
     wait_idle(qtbot, explorer)
     assert explorer.controller.column_scene(column).draft is False
     assert explorer.session.undo_text == "crop or scale"
@@ -106,7 +106,7 @@ def test_arrow_keys_move_and_resize_the_crop_in_one_step(qtbot: Any, explorer: E
 
 
 def test_a_scale_too_small_says_so_and_runs_nothing_on_the_exemplar_before(qtbot: Any, explorer: Explorer) -> None:
-    explorer.controller.edit_scale(0.01)
+    explorer.controller.editing.scale(0.01)
     qtbot.waitUntil(lambda: not explorer.controller.busy, timeout=10_000)
     assert "at least 2 x 2 pixels" in explorer.window.message_bar.label.text()
     assert explorer.controller.exemplar is None

@@ -43,7 +43,7 @@ def test_a_session_is_saved_and_opened_again(
     explorer.session.select(ids(explorer)[1])
     explorer.session.set_column_seed(ids(explorer)[0], 41)
     explorer.session.rename_column(ids(explorer)[0], "Mine")
-    explorer.controller.edit_crop(Crop(2, 4, 30, 32), True)
+    explorer.controller.editing.crop(Crop(2, 4, 30, 32), True)
     wait_idle(qtbot, explorer)
     images = [result_image(explorer, each) for each in ids(explorer)]
     path = saved(qtbot, explorer, tmp_path / "a.texlab")
@@ -170,7 +170,7 @@ def test_a_large_picture_comes_after_the_columns(
     qtbot: Any, explorer: Explorer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("texlab_core.documents.project.LARGE", 1000)
-    explorer.controller.edit_crop(Crop(2, 4, 30, 32), True)
+    explorer.controller.editing.crop(Crop(2, 4, 30, 32), True)
     wait_idle(qtbot, explorer)
     session, opener = explorer.session, explorer.opener
     before = ids(explorer)

@@ -96,7 +96,7 @@ def in_front(qtbot: Any, explorer: Explorer, name: str, *, wait: bool = True) ->
     column = next(each for each in explorer.session.state.columns if each.method == wanted)
     explorer.session.select(column.id)
     if name == "explain":
-        explorer.controller.pin(column.id, 9, 9)
+        explorer.controller.pointing.pin(column.id, 9, 9)
     explorer.window.raise_dock(name)
     QApplication.processEvents()
     if wait:

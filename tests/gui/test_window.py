@@ -430,12 +430,12 @@ def test_efros_leung_is_drafted_while_a_slider_is_dragged(
     explorer = open_window(str(texture), [("efros-leung", params)], size=64)
     (column_id,) = ids(explorer)
     explorer.controller._runners[column_id].seconds = 10.0
-    explorer.controller.edit_params(column_id, params.replace(eps=0.3), "eps", False)
+    explorer.controller.editing.params(column_id, params.replace(eps=0.3), "eps", False)
     scene = explorer.controller.column_scene
     qtbot.waitUntil(lambda: scene(column_id).draft and scene(column_id).status == "finished", timeout=20_000)
     assert scene(column_id).result is None
     assert "draft" in explorer.workspace.columns[column_id].line.text()
-    explorer.controller.edit_params(column_id, params.replace(eps=0.3), "eps", True)
+    explorer.controller.editing.params(column_id, params.replace(eps=0.3), "eps", True)
     wait_idle(qtbot, explorer)
     assert not scene(column_id).draft
     column = explorer.session.state.columns[0]

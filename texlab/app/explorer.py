@@ -334,10 +334,10 @@ class Explorer(QObject):
         self.desk.tab_wanted.connect(self._open_tab)
         parameters.dock_wanted.connect(window.raise_dock)
         exemplar = self.workspace.exemplar
-        exemplar.crop_changed.connect(controller.edit_crop)
-        exemplar.scale_changed.connect(lambda scale: turn("scale", partial(controller.edit_scale, scale)))
+        exemplar.crop_changed.connect(controller.editing.crop)
+        exemplar.scale_changed.connect(lambda scale: turn("scale", partial(controller.editing.scale, scale)))
         exemplar.levels_changed.connect(
-            lambda levels, look: turn("levels", partial(controller.edit_levels, levels, look))
+            lambda levels, look: turn("levels", partial(controller.editing.levels, levels, look))
         )
         exemplar.whole_wanted.connect(self._show_whole)
         exemplar.transparency_wanted.connect(self.opener.read_transparency)
@@ -349,8 +349,8 @@ class Explorer(QObject):
         view.method_chosen.connect(self.handlers.choose_method)
         view.command.connect(self.handlers.column_command)
         view.hovered.connect(self.presenter.say_column_pixel)
-        view.hovered.connect(controller.point_at)
-        view.pixel_clicked.connect(controller.pin)
+        view.hovered.connect(controller.pointing.point_at)
+        view.pixel_clicked.connect(controller.pointing.pin)
         view.map_chosen.connect(self.overlays.choose)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import dataclasses
 import os
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +9,19 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.consent import Consent
+from texlab.runs.editing import Editing
 from texlab.runs.errands import Errands
 from texlab.runs.exemplar import Preparation, Prepared
 from texlab.runs.fill_runner import FillRunner
+from texlab.runs.pointing import Pointing
 from texlab.runs.slots import Slots
 from texlab.runs.sweep_runner import SweepRunner
 from texlab.runs.tuning_runner import TuningRunner
 from texlab.runs.worker import Request, Worker
-from texlab.state.changes import rescaled
 from texlab.state.difference import difference
 from texlab.state.lesson_scene import NO_LESSON
-from texlab.state.scene import ColumnScene, Probe, Scene
+from texlab.state.scene import ColumnScene, Scene
 from texlab_core.engine.cache import AnalysisCache
-from texlab_core.engine.registry import find_method
 from texlab_core.warming import Need, Warmth, every_need
 
 if TYPE_CHECKING:
@@ -32,14 +30,11 @@ if TYPE_CHECKING:
     from texlab.state.chosen import Sample, State
     from texlab.state.filling import FillPlan
     from texlab.state.lesson_scene import LessonScene
-    from texlab.state.scene import Frame
     from texlab.state.session import Session
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
     from texlab.style.pictures import Picture
-    from texlab_core.engine.inputs import Crop, ImageInput, Input
-    from texlab_core.engine.levels import Levels
-    from texlab_core.engine.params import Params
+    from texlab_core.engine.inputs import ImageInput
 
 # What the analyses of earlier exemplars and parameters may take together.
 ANALYSES_BYTES = 256 * 2**20
@@ -68,11 +63,10 @@ class Controller(QObject):
         )
         self._runners: dict[int, ColumnRunner] = {}
         self._leaving: list[ColumnRunner] = []
-        self._dragging = False
-        self._cropping = False
+        self.editing = Editing(session, self)
+        self.editing.released.connect(self._released)
+        self.pointing = Pointing(self)
         self._consent = Consent()
-        self._probe: Probe | None = None
-        self._stage: tuple[int, Frame] | None = None
         self._lesson = NO_LESSON
         self._preparation = Preparation(self)
         self._preparation.ready.connect(self._exemplar_prepared)
@@ -88,6 +82,7 @@ class Controller(QObject):
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
         self._refresh.timeout.connect(self._announce)
+        self.pointing.changed.connect(self._refresh.start)
         self._sweeps = SweepRunner(self.slots, self.warmth, self)
         self._sweeps.changed.connect(self._refresh.start)
         self._tuning = TuningRunner(self.slots, self.warmth, self)
@@ -121,12 +116,12 @@ class Controller(QObject):
             self.exemplar,
             columns,
             self.session.selected_id,
-            self._probe,
+            self.pointing.probe,
             self._sweeps.scene,
             self.session.state.seed,
             self._tuning.scene,
             self._shared.points.points,
-            self._stage_of(self.session.selected_id),
+            self.pointing.stage_of(self.column_scene(self.session.selected_id)),
             self._lesson,
             self._source(),
             self._fills.scene,
@@ -144,13 +139,6 @@ class Controller(QObject):
         """Return the whole picture of the exemplar in use."""
         sample = self.session.state.sample
         return None if sample is None or self.prepared is None else sample.source
-
-    def _stage_of(self, column_id: int) -> Frame | None:
-        """Return the stage chosen in a column, as long as its run keeps it."""
-        runner = self._runners.get(column_id)
-        if self._stage is None or runner is None or self._stage[0] != column_id:
-            return None
-        return next((frame for frame in runner.scene.frames if frame is self._stage[1]), None)
 
     def column_scene(self, column_id: int) -> ColumnScene | None:
         """Return what one column shows."""
@@ -190,107 +178,15 @@ class Controller(QObject):
 
     # What the user does.
 
-    def edit_params(self, column_id: int, params: Params, name: str, final: bool) -> None:
-        """Take parameters from the form: drafts while a control is dragged, the full size on release."""
-        with self._drag(not final):
-            self.session.set_params(column_id, params, name, merge=("knob", column_id, name))
-        self._settle(final, (column_id,))
-
-    def edit_inputs(
-        self, column_id: int, inputs: tuple[tuple[str, Input], ...], text: str, final: bool = True
-    ) -> None:
-        """Give a column other further inputs: drafts while something is dragged, the full size on release."""
-        with self._drag(not final):
-            self.session.set_inputs(column_id, inputs, text, merge=("inputs", column_id, text))
-        self._settle(final, (column_id,))
-
-    def edit_crop(self, crop: Crop | None, final: bool) -> None:
-        """Take another crop from the exemplar's box."""
-        sample = self.session.state.sample
-        if sample is not None:
-            with self._drag(not final):
-                self.session.set_sample(dataclasses.replace(sample, crop=crop), merge="crop")
-            self._cropping = not final
-            # An exemplar that is still being prepared starts the columns at full size when it comes.
-            self._settle(final, () if self._preparation.busy else tuple(self._runners))
-
-    def edit_scale(self, scale: float, merge: object | None = None) -> None:
-        """Scale the source; the crop is scaled along."""
-        sample = self.session.state.sample
-        if sample is None or scale == sample.scale:
-            return
-        self.session.set_sample(rescaled(sample, scale), merge=merge)
-
-    def edit_levels(self, levels: Levels | None, look_only: bool, merge: object | None = None) -> None:
-        """Take other levels of the exemplar, for the methods too or for looking only."""
-        sample = self.session.state.sample
-        if sample is not None:
-            look_only = look_only and levels is not None
-            changed = dataclasses.replace(sample, levels=levels, look_only=look_only)
-            self.session.set_sample(changed, merge=merge)
-
-    @contextlib.contextmanager
-    def _drag(self, dragging: bool) -> Any:
-        self._dragging = dragging
-        try:
-            yield
-        finally:
-            self._dragging = False
-
-    def _settle(self, final: bool, columns: tuple[int, ...]) -> None:
-        if not final:
-            return
-        self.session.finish_merge()
-        for column_id in columns:
-            runner = self._runners.get(column_id)
-            if runner is not None and runner.drafted:
-                self._start(column_id, alone=len(columns) == 1)
-
     def show_stored(self, column_id: int, picture: Picture, measures: Mapping[str, float]) -> None:
         """Show an earlier result of a column with its numbers, until that of the present run comes."""
         if (runner := self._runners.get(column_id)) is not None:
             runner.show_stored(picture, measures)
 
-    def point_at(self, column_id: int, row: int, column: int) -> None:
-        """Ask about the pixel under the pointer, unless another one is pinned."""
-        if self._probe is not None and self._probe.pinned:
-            return
-        self._set_probe(Probe(column_id, row, column) if row >= 0 else None)
-
-    def pin(self, column_id: int, row: int, column: int) -> None:
-        """Keep asking about a pixel; the same pixel again lets go of it."""
-        wanted = Probe(column_id, row, column, pinned=True)
-        self._set_probe(None if self._probe == wanted or row < 0 else wanted)
-
-    def show_stage(self, column_id: int, stage: Frame | None) -> None:
-        """Let the tabs look at a stage of a column's run; None goes back to the result."""
-        self._stage = None if stage is None else (column_id, stage)
-        self._refresh.start()
-
-    def ask_about(self, probe: Probe | None) -> None:
-        """Ask about this pixel, or about none, whatever was asked about before."""
-        self._set_probe(probe)
-
-    @property
-    def probe(self) -> Probe | None:
-        """The pixel that is asked about."""
-        return self._probe
-
     def show_lesson(self, lesson: LessonScene) -> None:
         """Tell everybody about the lesson that is given."""
         self._lesson = lesson
         self._refresh.start()
-
-    def _set_probe(self, probe: Probe | None) -> None:
-        if probe != self._probe:
-            self._probe = probe
-            self._refresh.start()
-
-    def reset_params(self, column_id: int) -> None:
-        """Give a column its method's defaults."""
-        column = self.session.state.column(column_id)
-        if column is not None:
-            self.session.set_params(column_id, find_method(column.method).params(), "reset all")
 
     def ask_first(self) -> None:
         """Let large jobs wait for the user, until they ask for one: what comes next is from a file."""
@@ -404,8 +300,19 @@ class Controller(QObject):
             self._prepare(after.sample)
         elif self.prepared is not None:
             for column_id in changes.run:
-                self._start(column_id, draft=self._dragging, alone=len(changes.run) == 1)
+                self._start(column_id, draft=self.editing.dragging, alone=len(changes.run) == 1)
         self._refresh.start()
+
+    def _released(self, column_id: int | None) -> None:
+        """Make what was drafted at full size, in one column or in all of them."""
+        columns = tuple(self._runners) if column_id is None else (column_id,)
+        if column_id is None and self._preparation.busy:
+            # An exemplar that is still being prepared starts the columns at full size when it comes.
+            return
+        for each in columns:
+            runner = self._runners.get(each)
+            if runner is not None and runner.drafted:
+                self._start(each, alone=len(columns) == 1)
 
     def _let_go(self, runner: ColumnRunner) -> None:
         """End a column without waiting: the window must not stand still while it comes to a stop."""
@@ -423,18 +330,18 @@ class Controller(QObject):
         self._runners[column_id] = runner
 
     def _prepare(self, sample: Sample | None) -> None:
-        self._cropping = self._dragging
+        self.editing.cropping = self.editing.dragging
         # While the box is dragged, the drafts on their way are still worth seeing.
-        if not self._cropping:
+        if not self.editing.cropping:
             for runner in self._runners.values():
                 runner.await_exemplar(coming=sample is not None)
-        self._preparation.take(sample, patient=self._cropping)
+        self._preparation.take(sample, patient=self.editing.cropping)
 
     def _exemplar_prepared(self, prepared: Prepared) -> None:
         self.exemplar_ready.emit(prepared)
-        if self._cropping or not self._preparation.busy:
+        if self.editing.cropping or not self._preparation.busy:
             for column in self.session.state.columns:
-                self._start(column.id, draft=self._cropping)
+                self._start(column.id, draft=self.editing.cropping)
         self._refresh.start()
 
     def _exemplar_failed(self, sentence: str) -> None:

@@ -111,16 +111,16 @@ class Carrier:
         controller, session = self._controller, self._session
         match intention:
             case EditParams(column_id, params, name, final):
-                controller.edit_params(column_id, params, name, final)
+                controller.editing.params(column_id, params, name, final)
             case EditField(column_id, field, value, final):
                 column = session.state.column(column_id)
                 if column is not None:
-                    controller.edit_params(column_id, column.params.replace(**{field: value}), field, final)
+                    controller.editing.params(column_id, column.params.replace(**{field: value}), field, final)
             case ChangeMethod(column_id, method):
                 session.set_method(column_id, method, find_method(method).params())
                 self._choose(column_id)
             case EditInputs(column_id, inputs, text, final):
-                controller.edit_inputs(column_id, inputs, text, final)
+                controller.editing.inputs(column_id, inputs, text, final)
             case EditSize(column_id, size):
                 session.set_column_size(column_id, size, merge=("size", column_id))
             case FillHoles():
@@ -128,11 +128,11 @@ class Carrier:
             case ChooseColumn(column_id):
                 self._choose(column_id)
             case Point(column_id, row, place):
-                controller.point_at(column_id, row, place)
+                controller.pointing.point_at(column_id, row, place)
             case Pin(column_id, row, place):
-                controller.pin(column_id, row, place)
+                controller.pointing.pin(column_id, row, place)
             case ShowStage(column_id, stage):
-                controller.show_stage(column_id, stage)
+                controller.pointing.show_stage(column_id, stage)
             case TakePicture(dock, how):
                 self._take_picture(dock, how)
             case ShowMarks(marks):

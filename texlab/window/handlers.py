@@ -107,7 +107,7 @@ class Handlers(QObject):
             "remove": session.remove_column,
             "run": controller.run_column,
             "stop": controller.stop_column,
-            "reset": controller.reset_params,
+            "reset": controller.editing.reset_params,
         }
 
     def _by_action(self) -> dict[str, Any]:

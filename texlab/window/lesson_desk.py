@@ -185,7 +185,7 @@ class LessonDesk:
         name = self._tab if name == LESSONS else name
         host = self._hosts.get(name)
         controller, session = self._controller, self._controller.session
-        probe = controller.probe
+        probe = controller.pointing.probe
         kept = probe is not None and probe.pinned
         return Draft(
             session.state,

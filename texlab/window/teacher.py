@@ -184,7 +184,7 @@ class Teacher(QObject):
         session.reset_history()
         if step.columns:
             session.select(self._first_id + step.chosen)
-        self._controller.ask_about(self._probe(step))
+        self._controller.pointing.ask_about(self._probe(step))
         self._to_show = step
         if not stay:
             self._show_tab(step)
@@ -247,7 +247,7 @@ class Teacher(QObject):
         self._versions.clear()
         aside, self._aside, self._opened, self._to_show = self._aside, None, None, None
         self._scene = LessonScene(folder=self._scene.folder, shelf=self._scene.shelf)
-        self._controller.ask_about(None)
+        self._controller.pointing.ask_about(None)
         self._session.bring_back(aside)
         self._autosave.release()
         self._presenter.show_marks(())
