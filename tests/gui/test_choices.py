@@ -107,10 +107,10 @@ def test_the_other_choices_are_taken_from_the_exemplars_menu(
     target = tmp_path / "out.png"
     explorer.opener.save(explorer.controller.column_scene(ids(explorer)[0]).result, str(target))
     qtbot.waitUntil(target.exists)
-    assert explorer.window.errand_label.text() in ("Saving ...", "")
+    assert explorer.window.status.errand.text() in ("Saving ...", "")
     wait_idle(qtbot, explorer)
     assert read_image(target, "out.png").values.shape[2] == 4
-    assert explorer.window.errand_label.text() == ""
+    assert explorer.window.status.errand.text() == ""
     explorer.session.undo()
     assert explorer.session.state.sample.alpha == "ignore"
     explorer.window.close()
@@ -138,7 +138,7 @@ def test_saving_is_seen_and_keeps_the_exemplars_depth(
 
     monkeypatch.setattr(QFileDialog, "getSaveFileName", ask)
     seen: list[str] = []
-    explorer.controller.errands_changed.connect(lambda _: seen.append(explorer.window.errand_label.text()))
+    explorer.controller.errands_changed.connect(lambda _: seen.append(explorer.window.status.errand.text()))
     explorer.exchange.export(ids(explorer)[0])
     qtbot.waitUntil(target.with_suffix(".png").exists)
     wait_idle(qtbot, explorer)

@@ -53,7 +53,7 @@ def test_the_memory_is_told_again_and_again(explorer: Explorer, monkeypatch: pyt
     assert not explorer._memory.isSingleShot()
     for expected in ("100 MB", "2000 MB"):
         explorer._memory.timeout.emit()
-        assert explorer.window.memory_label.text() == expected
+        assert explorer.window.status.memory.text() == expected
 
 
 @pytest.mark.parametrize("pages", [0, 256, 512])

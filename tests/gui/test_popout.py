@@ -287,17 +287,17 @@ def test_a_test_of_columns_is_made_given_scored_and_kept(
     session.set_columns([(name, methods()[name].params()) for name in ("tiling", "pixels")], "two")
     explorer.window.actions_by_name["popout"].trigger()
     dialog = desk.dialog
-    assert [dialog.columns.item(row).text() for row in range(2)] == ["1. Tiling", "2. Independent pixels"]
+    assert [dialog.setup.columns.item(row).text() for row in range(2)] == ["1. Tiling", "2. Independent pixels"]
     for row in range(2):
-        dialog.columns.item(row).setCheckState(Qt.CheckState.Unchecked)
-    assert dialog.foreseen.text() == "Choose at least one method."
-    assert not dialog.start_button.isEnabled()
+        dialog.setup.columns.item(row).setCheckState(Qt.CheckState.Unchecked)
+    assert dialog.setup.foreseen.text() == "Choose at least one method."
+    assert not dialog.setup.start_button.isEnabled()
     for row in range(2):
-        dialog.columns.item(row).setCheckState(Qt.CheckState.Checked)
-    dialog.repeats.setValue(1)
-    dialog.seed.setValue(11)
-    assert dialog.foreseen.text().startswith("2 pictures of 256 x 256 pixels with a piece of 24 x 20")
-    qtbot.mouseClick(dialog.start_button, Qt.MouseButton.LeftButton)
+        dialog.setup.columns.item(row).setCheckState(Qt.CheckState.Checked)
+    dialog.setup.repeats.setValue(1)
+    dialog.setup.seed.setValue(11)
+    assert dialog.setup.foreseen.text().startswith("2 pictures of 256 x 256 pixels with a piece of 24 x 20")
+    qtbot.mouseClick(dialog.setup.start_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: dialog.pages.currentWidget() is dialog.ready)
     qtbot.mouseClick(dialog.begin_button, Qt.MouseButton.LeftButton)
     trials = desk.record.trials
@@ -326,8 +326,8 @@ def test_a_test_of_columns_is_made_given_scored_and_kept(
     assert [row["hit"] for row in rows] == ["1", "0"]
     assert {row["method"] for row in rows} == {"Tiling", "Independent pixels"}
     qtbot.mouseClick(dialog.again_button, Qt.MouseButton.LeftButton)
-    qtbot.mouseClick(dialog.all_button, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog.foreseen.text().startswith("Written"))
+    qtbot.mouseClick(dialog.setup.all_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dialog.setup.foreseen.text().startswith("Written"))
     with out.open(newline="") as stream:
         assert [row["test"] for row in csv.DictReader(stream)] == [path.stem] * 2
 
@@ -339,12 +339,15 @@ def test_making_can_be_stopped_and_methods_that_fail_are_said(
     desk.open()
     dialog = desk.dialog
     # Two Heeger-Bergen columns get names that can be told apart.
-    assert [each.name for each in desk.design(dialog.request()).settings] == ["Heeger-Bergen", "Heeger-Bergen 2"]
-    dialog.repeats.setValue(50)
-    qtbot.mouseClick(dialog.start_button, Qt.MouseButton.LeftButton)
+    assert [each.name for each in desk.design(dialog.setup.request()).settings] == [
+        "Heeger-Bergen",
+        "Heeger-Bergen 2",
+    ]
+    dialog.setup.repeats.setValue(50)
+    qtbot.mouseClick(dialog.setup.start_button, Qt.MouseButton.LeftButton)
     assert dialog.pages.currentWidget() is dialog.making
     qtbot.mouseClick(dialog.stop_button, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog.foreseen.text() == "Stopped.")
+    qtbot.waitUntil(lambda: dialog.setup.foreseen.text() == "Stopped.")
     assert desk.record is None
     assert not desk.store.folder.exists()
 
@@ -352,9 +355,9 @@ def test_making_can_be_stopped_and_methods_that_fail_are_said(
         raise InputError("It cannot work.")
 
     monkeypatch.setattr("texlab_core.popout.making.picture_of", fails)
-    qtbot.mouseClick(dialog.start_button, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog.foreseen.text() == "It cannot work.")
-    figures = desk.design(dialog.request(figures=True))
+    qtbot.mouseClick(dialog.setup.start_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dialog.setup.foreseen.text() == "It cannot work.")
+    figures = desk.design(dialog.setup.request(figures=True))
     assert [each.name[:6] for each in figures.settings] == ["Fig. 2", "Fig. 3", "Fig. 4", "Fig. 5"]
 
 

@@ -47,7 +47,7 @@ class Window(QObject):
 
     def __init__(self) -> None:
         super().__init__()
-        self.pixel_label, self.jobs_label = Said(), Said()
+        self.status = SimpleNamespace(pixel=Said(), jobs=Said())
         self.message_bar, self.gallery, self.parameters = Said(), Said(), Said()
         self.gallery.strip = Said()
         self.gallery.strip.sources = ()
@@ -66,7 +66,7 @@ class Window(QObject):
 
     @property
     def pixel(self) -> str:
-        return str(self.pixel_label.calls["setText"][0])
+        return str(self.status.pixel.calls["setText"][0])
 
 
 class Bench:
@@ -233,13 +233,13 @@ def test_a_scene_reaches_every_dock_and_the_numbers_of_jobs(bench: Bench) -> Non
     bench.presenter.show_scene(scene)
     assert bench.host.calls["show_scene"] == (scene,)
     assert bench.overlays.calls["show_scene"] == (scene,)
-    assert bench.window.jobs_label.calls["setText"] == ("1 running · 1 failed",)
+    assert bench.window.status.jobs.calls["setText"] == ("1 running · 1 failed",)
     # The larger of the result's and the source's sides, and the thinnest of all.
     assert bench.workspace.calls["set_extents"] == ((24, 32), (20, 30))
     assert bench.window.actions_by_name["export"].isEnabled()
     bench.presenter.show_scene(scene_of(column_of(None, **params)))
     assert not bench.window.actions_by_name["use"].isEnabled()
-    assert bench.window.jobs_label.calls["setText"] == ("ready",)
+    assert bench.window.status.jobs.calls["setText"] == ("ready",)
 
 
 def test_the_session_and_the_exemplar_have_names(bench: Bench) -> None:

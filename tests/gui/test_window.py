@@ -287,7 +287,7 @@ def test_linked_views_and_the_value_under_the_cursor(qtbot: Any, explorer: Explo
     qtbot.mouseMove(one.viewport(), one.to_widget(10.5, 20.5).toPoint())
     image = result_image(explorer, first)
     values = " ".join(f"{value:.3f}" for value in image[10, 20])
-    qtbot.waitUntil(lambda: f"20, 10   RGB {values}" in explorer.window.pixel_label.text(), timeout=5_000)
+    qtbot.waitUntil(lambda: f"20, 10   RGB {values}" in explorer.window.status.pixel.text(), timeout=5_000)
 
 
 def test_tiling_shows_four(qtbot: Any, explorer: Explorer) -> None:

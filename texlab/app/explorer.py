@@ -250,7 +250,7 @@ class Explorer(QObject):
 
     def _look_at_memory(self) -> None:
         used = memory_bytes()
-        self.window.memory_label.setText(memory_text(used))
+        self.window.status.memory.setText(memory_text(used))
         self._thrift.look(used, idle=self.idle)
 
     @property
@@ -293,7 +293,7 @@ class Explorer(QObject):
         controller.scene_changed.connect(presenter.show_scene)
         controller.scene_changed.connect(self.tuning.show_scene)
         controller.exemplar_ready.connect(presenter.show_exemplar)
-        controller.errands_changed.connect(window.show_errands)
+        controller.errands_changed.connect(window.status.show_errands)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))
         controller.said.connect(lambda text: window.message_bar.tell(text, "news"))
         for how in ("copy", "save"):

@@ -57,3 +57,14 @@ def _painted(drawing: str, colour: QColor, side: int, ratio: int, share: float) 
     painter.end()
     pixmap.setDevicePixelRatio(ratio)
     return pixmap
+
+
+def application_icon() -> QIcon:
+    """Return the program's icon."""
+    pixmap = QPixmap()
+    try:
+        pixmap.loadFromData(resource("icons/texlab.png").read_bytes())
+    except (OSError, ValueError):
+        pixmap = QPixmap(QSize(32, 32))
+        pixmap.fill(Qt.GlobalColor.darkCyan)
+    return QIcon(pixmap)

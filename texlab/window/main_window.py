@@ -6,20 +6,20 @@ import base64
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QByteArray, QChildEvent, QEvent, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QActionGroup, QIcon, QPixmap
+from PySide6.QtCore import QByteArray, QChildEvent, QEvent, Qt, QTimer, Signal
+from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import (
     QApplication,
     QDockWidget,
     QMainWindow,
     QMenu,
-    QProgressBar,
     QTabBar,
     QVBoxLayout,
     QWidget,
 )
 
 from texlab.form.panel import ParametersView
+from texlab.style.icons import application_icon
 from texlab.style.theme import apply_theme
 from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.plain import Label, set_tip
@@ -32,11 +32,12 @@ from texlab.window.message_bar import MessageBar
 from texlab.window.message_room import room_for_messages
 from texlab.window.panel_strip import PanelStrip
 from texlab.window.screen_fit import first_window, panel_sizes, within
+from texlab.window.status_bar import StatusBar
 from texlab.window.stops import FocusRing, next_stop
 from texlab.window.toolbar import LAYOUTS, ToolBar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
 
@@ -48,18 +49,6 @@ if TYPE_CHECKING:
     from texlab.style.theme import Theme, ThemeSource
     from texlab.window.screen_fit import Rect
 
-
-# What takes long enough to be seen, by the names of the errands.
-ERRANDS = {
-    "open": "opening",
-    "open-document": "opening",
-    "session": "opening",
-    "save": "saving",
-    "sheet": "saving",
-    "save-code": "saving",
-    "copy": "copying",
-    "fill": "filling",
-}
 
 # Commands that need a chosen column, besides those of the tool bar.
 OF_ONE = ("enlarge", "apart", "rename", "history", "pin", "own-seed", "new-seed")
@@ -123,7 +112,8 @@ class MainWindow(QMainWindow):
         self.toolbar = ToolBar(self.actions_by_name)
         self.addToolBar(self.toolbar)
         self.toolbar.layout_menu.aboutToShow.connect(self._mark_layout)
-        self._make_status()
+        self.status = StatusBar()
+        self.setStatusBar(self.status)
         self._restore_geometry()
         self.show_theme(themes.theme)
         self.layouts.set_text_size()
@@ -228,32 +218,6 @@ class MainWindow(QMainWindow):
             action.setStatusTip(dock.toolTip())
             action.triggered.connect(partial(self._go_to_panel, name))
 
-    def _make_status(self) -> None:
-        bar = self.statusBar()
-        self.pixel_label = Label("")
-        self.pixel_label.setObjectName("status-pixel")
-        self.pixel_label.setContentsMargins(6, 0, 0, 0)
-        self.jobs_label = Label("")
-        self.jobs_label.setObjectName("status-jobs")
-        self.jobs_label.setProperty("role", "muted")
-        self.memory_label = Label("")
-        self.memory_label.setObjectName("status-memory")
-        self.memory_label.setProperty("role", "muted")
-        set_tip(self.memory_label, "Memory used by the program")
-        bar.addWidget(self.pixel_label, 1)
-        self.errand_label = Label("")
-        self.errand_label.setObjectName("status-errand")
-        self.errand_bar = QProgressBar()
-        self.errand_bar.setObjectName("status-errand-progress")
-        self.errand_bar.setAccessibleName("Opening or saving")
-        self.errand_bar.setRange(0, 0)
-        self.errand_bar.setFixedWidth(60)
-        bar.addPermanentWidget(self.errand_label)
-        bar.addPermanentWidget(self.errand_bar)
-        self.show_errands(())
-        bar.addPermanentWidget(self.jobs_label)
-        bar.addPermanentWidget(self.memory_label)
-
     # Showing.
 
     def show_theme(self, theme: Theme) -> None:
@@ -281,12 +245,6 @@ class MainWindow(QMainWindow):
         self.actions_by_name["pin"].setChecked(column is not None and column.pinned)
         self.actions_by_name["own-seed"].setChecked(column is not None and column.seed is not None)
 
-    def show_errands(self, names: Sequence[str]) -> None:
-        """Show that something is being opened, copied or saved."""
-        words = list(dict.fromkeys(ERRANDS[name] for name in names if name in ERRANDS))
-        self.errand_label.setText(f"{' and '.join(words).capitalize()} ..." if words else "")
-        self.errand_bar.setVisible(bool(words))
-
     def show_recent(self, paths: list[str], chosen: Any) -> None:
         """List the files opened lately."""
         self.recent_menu.clear()
@@ -303,13 +261,6 @@ class MainWindow(QMainWindow):
     def settle_middle(self) -> None:
         """Let what was shown or hidden in the middle count at once."""
         self._middle_layout.activate()
-
-    def add_zoom(self, label: str, box: QWidget) -> None:
-        """Put a box with a word before it into the status bar."""
-        word = Label(label)
-        word.setProperty("role", "muted")
-        self.statusBar().insertPermanentWidget(1, word)
-        self.statusBar().insertPermanentWidget(2, box)
 
     def show_dock(self, name: str) -> bool:
         """Bring a dock to the front and leave the keyboard where it is; return whether there is such a dock."""
@@ -449,19 +400,6 @@ class MainWindow(QMainWindow):
             brought = brought_by(event.mimeData())
             # The answer to the drop must not wait for what follows from it.
             QTimer.singleShot(0, lambda: self.dropped.emit(brought))
-
-
-def application_icon() -> QIcon:
-    """Return the program's icon."""
-    from texlab_core.files.resources import resource
-
-    pixmap = QPixmap()
-    try:
-        pixmap.loadFromData(resource("icons/texlab.png").read_bytes())
-    except (OSError, ValueError):
-        pixmap = QPixmap(QSize(32, 32))
-        pixmap.fill(Qt.GlobalColor.darkCyan)
-    return QIcon(pixmap)
 
 
 def _base64(data: QByteArray) -> str:

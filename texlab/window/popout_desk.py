@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog
 from texlab.runs.worker import Worker
 from texlab.storage.paths import config_dir
 from texlab.window.export_desk import column_titles
-from texlab.window.popout_dialog import PopoutDialog, PopoutRequest
+from texlab.window.popout_dialog import PopoutDialog
 from texlab_core.errors import InputError
 from texlab_core.popout.design import Design, Setting, figures, usual_size
 from texlab_core.popout.store import FOLDER, PopoutStore
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from texlab.runs.worker import Task
     from texlab.storage.settings import Settings
     from texlab.window.main_window import MainWindow
+    from texlab.window.popout_setup import PopoutRequest
     from texlab_core.engine.inputs import ImageInput
     from texlab_core.popout.making import Made
     from texlab_core.popout.record import Record
@@ -74,7 +75,7 @@ class PopoutDesk:
         if dialog.resting:
             named = enumerate(column_titles(self._controller).items(), 1)
             columns = [(column_id, f"{place}. {title}") for place, (column_id, title) in named]
-            dialog.set_columns(columns, secrets.randbelow(MOST_SEED + 1))
+            dialog.setup.set_columns(columns, secrets.randbelow(MOST_SEED + 1))
             dialog.show_setup()
         # Results and exemplar below it would help.
         dialog.setGeometry(self._window.geometry())
@@ -115,11 +116,11 @@ class PopoutDesk:
         try:
             design = self.design(asked)
         except InputError as error:
-            self.dialog.show_foreseen(str(error), sound=False)
+            self.dialog.setup.show_foreseen(str(error), sound=False)
             return
         (height, width), (rows, columns) = design.size, design.piece
         count = design.repeats * len(design.settings)
-        self.dialog.show_foreseen(
+        self.dialog.setup.show_foreseen(
             f"{count} {'picture' if count == 1 else 'pictures'} of {width} x {height} pixels with a piece of"
             f" {columns} x {rows}, in an order that the seed draws. A click in the middle is right in"
             f" {design.chance:.0%}: that is guessing.",
@@ -132,7 +133,7 @@ class PopoutDesk:
         try:
             design = self.design(asked)
         except InputError as error:
-            dialog.show_foreseen(str(error), sound=False)
+            dialog.setup.show_foreseen(str(error), sound=False)
             return
         dialog.show_making()
         self._maker.submit(partial(make_pictures, design))
@@ -192,8 +193,8 @@ class PopoutDesk:
         if dialog is None:
             return
         dialog.say(sentence)
-        if dialog.pages.currentWidget() is dialog.setup:
-            dialog.foreseen.setText(sentence)
+        if dialog.pages.currentWidget() is dialog.fields:
+            dialog.setup.foreseen.setText(sentence)
 
 
 def make_pictures(design: Design, task: Task) -> Made:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
-    QFormLayout,
     QHBoxLayout,
     QProgressBar,
     QPushButton,
@@ -20,67 +17,26 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.widgets.hidden_picture import HiddenPicture
-from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label, set_tip
-from texlab.widgets.tick_list import TickList
 from texlab.window.popout_review import PopoutReview
-from texlab_core.engine.job import MAX_SEED
-from texlab_core.popout.design import DEFAULT_REPEATS, MAX_REPEATS
+from texlab.window.popout_setup import WIDEST, PopoutSetup, action_button
 from texlab_core.popout.scoring import Answer
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from PySide6.QtGui import QCloseEvent, QKeyEvent
 
     from texlab.style.theme import Theme
     from texlab_core.popout.making import Made
     from texlab_core.popout.record import Record
 
-SHARES = {
-    "a half of the exemplar": 0.5,
-    "a third of the exemplar": 1 / 3,
-    "the whole exemplar, as in the paper": 1.0,
-}
 # The same for every picture: it tells nothing, and the eye forgets the picture before.
 PAUSE_MS = 500
-MAX_FEATHER = 64
-# Of fields and sentences: the dialog is as large as the window.
-WIDEST = 720
 _STEPS = 1000
 HOW = (
     "In every picture lies a piece of the original. Click where you see it, as soon as you see it: hits, misses"
     " and times are kept, and nothing is told before the end.\n\nSpace: you cannot tell. Arrow keys move a cross,"
     " Enter answers there. Esc leaves the test; what was answered stays."
 )
-
-
-@dataclass(frozen=True)
-class PopoutRequest:
-    """What the user wants to test.
-
-    Parameters
-    ----------
-    columns
-        Ids of columns; none for the figures of the paper.
-    repeats
-        Pictures of each.
-    share
-        Sides of the piece over those of the exemplar.
-    feather
-        Width of the soft edge in pixels; 0 is hard.
-    seed
-        Decides seeds, places and order.
-    figures
-        Figs. 2 to 5 of De Bonet instead of columns.
-    """
-
-    columns: tuple[int, ...]
-    repeats: int
-    share: float
-    feather: int
-    seed: int
-    figures: bool = False
 
 
 class PopoutDialog(QDialog):
@@ -111,69 +67,20 @@ class PopoutDialog(QDialog):
         self._pause.timeout.connect(self._show_picture)
         self.pages = QStackedWidget()
         self.pages.setObjectName("popout-pages")
-        self.setup, self.making, self.ready = self._make_setup(), self._make_making(), self._make_ready()
+        self.setup = PopoutSetup()
+        self.setup.asked.connect(self.asked)
+        self.setup.edited.connect(self.edited)
+        self.setup.table_wanted.connect(self.table_wanted)
+        self.setup.closed.connect(self.close)
+        self.fields = _centred(self.setup)
+        self.making, self.ready = self._make_making(), self._make_ready()
         self.trial, self.outcome = self._make_trial(), self._make_result()
-        for page in (self.setup, self.making, self.ready, self.trial, self.outcome):
+        for page in (self.fields, self.making, self.ready, self.trial, self.outcome):
             self.pages.addWidget(page)
         layout = QVBoxLayout(self)
         layout.addWidget(self.pages)
 
     # Pages.
-
-    def _make_setup(self) -> QWidget:
-        fields = QWidget()
-        fields.setMaximumWidth(WIDEST)
-        form = QFormLayout(fields)
-        self.columns = TickList(7)
-        self.columns.itemChanged.connect(self._edited)
-        self.share = QComboBox()
-        for text, value in SHARES.items():
-            self.share.addItem(text, value)
-        self.repeats, self.feather, self.seed = WholeBox(), WholeBox(), WholeBox()
-        self.repeats.setRange(1, MAX_REPEATS)
-        self.repeats.setValue(DEFAULT_REPEATS)
-        self.feather.setRange(0, MAX_FEATHER)
-        self.feather.setSpecialValueText("hard, as in the paper")
-        self.feather.setSuffix(" px")
-        self.seed.setRange(0, min(MAX_SEED, 2**31 - 1))
-        rows = (
-            ("Methods", self.columns, "columns", "Whose results are tested, with the columns' parameters"),
-            ("Piece", self.share, "share", "How much of the original is put into each picture"),
-            (
-                "Edge",
-                self.feather,
-                "feather",
-                "Over how many pixels the piece is blended in; a hard edge may show",
-            ),
-            ("Pictures of each", self.repeats, "repeats", "More pictures make the interval narrower"),
-            ("Seed", self.seed, "seed", "Decides results, places and order; the same seed gives the same test"),
-        )
-        for label, widget, name, tip in rows:
-            widget.setObjectName(f"popout-{name}")
-            widget.setAccessibleName(label)
-            set_tip(widget, tip)
-            form.addRow(label, widget)
-        for box in (self.repeats, self.feather, self.seed):
-            box.valueChanged.connect(self._edited)
-        self.share.currentIndexChanged.connect(self._edited)
-        self.foreseen = Label("")
-        self.foreseen.setObjectName("popout-foreseen")
-        self.foreseen.setWordWrap(True)
-        self.foreseen.setMinimumHeight(3 * self.fontMetrics().lineSpacing())
-        form.addRow(self.foreseen)
-        buttons = QDialogButtonBox()
-        self.start_button = _button(buttons, "Make the pictures", "popout-start")
-        self.start_button.clicked.connect(lambda _=False: self.asked.emit(self.request()))
-        self.figures_button = _button(buttons, "Figures 2 to 5 of De Bonet", "popout-figures")
-        set_tip(self.figures_button, "Four ready-made pictures: repetition, pixels, bands, and De Bonet's own")
-        self.figures_button.clicked.connect(lambda _=False: self.asked.emit(self.request(figures=True)))
-        self.all_button = _button(buttons, "Export all tests ...", "popout-export-all")
-        set_tip(self.all_button, "Write every test that was kept as one table, CSV")
-        self.all_button.clicked.connect(lambda _=False: self.table_wanted.emit(True))
-        close = _button(buttons, "Close", "popout-close")
-        close.clicked.connect(lambda _=False: self.close())
-        form.addRow(buttons)
-        return _centred(fields)
 
     def _make_making(self) -> QWidget:
         page = QWidget()
@@ -245,12 +152,12 @@ class PopoutDialog(QDialog):
         self.message.setObjectName("popout-message")
         self.message.setWordWrap(True)
         buttons = QDialogButtonBox()
-        self.table_button = _button(buttons, "Export CSV ...", "popout-export")
+        self.table_button = action_button(buttons, "Export CSV ...", "popout-export")
         set_tip(self.table_button, "Write every picture of this test with its answer")
         self.table_button.clicked.connect(lambda _=False: self.table_wanted.emit(False))
-        self.again_button = _button(buttons, "Another test", "popout-again")
+        self.again_button = action_button(buttons, "Another test", "popout-again")
         self.again_button.clicked.connect(lambda _=False: self.show_setup())
-        close = _button(buttons, "Close", "popout-result-close")
+        close = action_button(buttons, "Close", "popout-result-close")
         close.clicked.connect(lambda _=False: self.close())
         layout.addWidget(self.review, 1)
         layout.addWidget(self.message)
@@ -263,44 +170,19 @@ class PopoutDialog(QDialog):
 
     # What is shown.
 
-    def set_columns(self, columns: Sequence[tuple[int, str]], seed: int) -> None:
-        """Offer columns by id and title, all ticked, and a seed."""
-        self.columns.offer(columns, [column_id for column_id, _ in columns])
-        self.seed.setValue(seed)
-        self._edited()
-
-    def request(self, *, figures: bool = False) -> PopoutRequest:
-        """Return what the fields say."""
-        return PopoutRequest(
-            columns=self.columns.ticked,
-            repeats=self.repeats.value(),
-            share=float(self.share.currentData()),
-            feather=self.feather.value(),
-            seed=self.seed.value(),
-            figures=figures,
-        )
-
-    def _edited(self) -> None:
-        self.edited.emit(self.request())
-
-    def show_foreseen(self, sentence: str, *, sound: bool) -> None:
-        """Say what the test will be, or why it cannot be."""
-        self.foreseen.setText(sentence)
-        self.start_button.setEnabled(sound)
-
     @property
     def resting(self) -> bool:
         """Whether no test is being made or given."""
-        return self.pages.currentWidget() in (self.setup, self.outcome)
+        return self.pages.currentWidget() in (self.fields, self.outcome)
 
     def show_setup(self, sentence: str = "") -> None:
         """Go back to the fields, and let the pictures go; a sentence says why."""
         self._made = None
         self.review.clear()
-        self.pages.setCurrentWidget(self.setup)
-        self._edited()
+        self.pages.setCurrentWidget(self.fields)
+        self.setup.edit()
         if sentence:
-            self.foreseen.setText(sentence)
+            self.setup.foreseen.setText(sentence)
 
     def show_making(self) -> None:
         """Show that the pictures are made."""
@@ -401,10 +283,3 @@ def _centred(inside: QWidget) -> QWidget:
     layout.addLayout(line)
     layout.addStretch(1)
     return page
-
-
-def _button(box: QDialogButtonBox, text: str, name: str) -> QPushButton:
-    button = box.addButton(text, QDialogButtonBox.ButtonRole.ActionRole)
-    button.setObjectName(name)
-    button.setAutoDefault(False)
-    return button

@@ -93,7 +93,7 @@ class Presenter(QObject):
             for status, word in (("running", "running"), ("waiting", "waiting"), ("failed", "failed"))
             if status in counts
         ]
-        self._window.jobs_label.setText(" · ".join(texts) or "ready")
+        self._window.status.jobs.setText(" · ".join(texts) or "ready")
         scene_chosen = scene.selected
         finished = scene_chosen is not None and scene_chosen.result is not None
         for name in ("export", "use"):
@@ -137,7 +137,7 @@ class Presenter(QObject):
             pixels = prepared.source_scaled.pixels
             if row < pixels.shape[0] and column < pixels.shape[1]:
                 text = self._exemplar_words(describe_value(pixels, row, column), row, column)
-        self._window.pixel_label.setText(text)
+        self._window.status.pixel.setText(text)
 
     def _exemplar_words(self, value: str, row: int, column: int) -> str:
         """Count from the crop's corner, as maps, tabs and files do."""
@@ -171,7 +171,7 @@ class Presenter(QObject):
                     text += f"   from exemplar {origin[1]}, {origin[0]}" if origin[0] >= 0 else ""
                 if counts is not None:
                     text += f"   candidates {counts.plane.data[row, column]}"
-        self._window.pixel_label.setText(text)
+        self._window.status.pixel.setText(text)
 
     def _show_choice(self) -> None:
         sample = self._session.state.sample

@@ -37,8 +37,8 @@ class StageSettings(QObject):
             "Zoom of the results (1: 100 %, F: whole pictures); type a number",
             workspace.link,
         )
-        window.add_zoom("Results", self.zoom)
-        window.add_zoom("Exemplar", self.exemplar_zoom)
+        window.status.add_zoom("Results", self.zoom)
+        window.status.add_zoom("Exemplar", self.exemplar_zoom)
         self._group("rows", ROWS, "largest")
         self._group("surround", tuple(SURROUNDS), "grey")
         linked = settings.values.get("linked") is True
