@@ -1,6 +1,9 @@
 """Batches in processes: how much faster two are than one, by CPU time, and memory against the number of jobs.
 
 Other programs do not count: on two free cores, two processes take half of what parent and processes need together.
+Where no other program runs, the clock says it too, here for all of De Bonet's textures:
+
+    python tests/benchmarks/bench_batch.py 800
 """
 
 from __future__ import annotations
@@ -10,6 +13,8 @@ import os
 import resource
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +28,7 @@ FEW, MANY = 40, 160
 
 def run(jobs: int, processes: int, folder: Path) -> dict[str, Any]:
     """Run jobs of De Bonet's 800 in a process of their own; return its figures."""
+    start = time.monotonic()
     done = subprocess.run(
         [sys.executable, __file__, str(jobs), str(processes), str(folder)],
         capture_output=True,
@@ -32,8 +38,7 @@ def run(jobs: int, processes: int, folder: Path) -> dict[str, Any]:
         check=True,
         timeout=1200,
     )
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
+    return json.loads(done.stdout) | {"wall_s": time.monotonic() - start}
 
 
 def test_two_processes_and_many_jobs(tmp_path: Path) -> None:
@@ -77,5 +82,19 @@ def main(jobs: int, processes: int, folder: str) -> None:
     )
 
 
+def by_the_clock(jobs: int) -> None:
+    """Print how long one process and two take, from start to end; each twice, and the quicker counts."""
+    with tempfile.TemporaryDirectory() as folder:
+        took = {
+            count: min(run(jobs, count, Path(folder) / f"{count}-{turn}")["wall_s"] for turn in range(2))
+            for count in (1, 2)
+        }
+    print(f"{jobs} textures: {took[1]:.1f} s in one process, {took[2]:.1f} s in two:", end=" ")
+    print(f"{took[1] / took[2]:.2f} times as fast")
+
+
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3])
+    if len(sys.argv) == 2:
+        by_the_clock(int(sys.argv[1]))
+    else:
+        main(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3])

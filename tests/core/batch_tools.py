@@ -11,6 +11,7 @@ import numpy as np
 
 from texlab_core.batch.plan import Plan, plan_from_json
 from texlab_core.images.formats.writing import write_image
+from texlab_core.work.threads import SUM_VARIABLES
 
 if TYPE_CHECKING:
     from texlab_core.engine.result import Result
@@ -48,6 +49,11 @@ def files_of(folder: Path) -> dict[str, bytes]:
 def shape_of(result: Result) -> tuple[tuple[int, ...], int]:
     """Return the shape of a result and the process that made it."""
     return result.image.shape, os.getpid()
+
+
+def sum_variables(result: Result) -> set[str | None]:
+    """Return what the process that made a result says to libraries for linear algebra."""
+    return {os.environ.get(name) for name in SUM_VARIABLES}
 
 
 def die_at_first(result: Result, *, marker: str) -> str:

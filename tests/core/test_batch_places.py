@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.core.batch_tools import die_at_first, die_when_large, files_of, shape_of, small_plan
+from tests.core.batch_tools import die_at_first, die_when_large, files_of, shape_of, small_plan, sum_variables
 from texlab_core.batch import cluster
 from texlab_core.batch.cluster import Cluster
 from texlab_core.batch.places import InProcess
@@ -171,6 +171,18 @@ def test_kept_processes_serve_the_next_run_and_results_travel(tmp_path: Path) ->
     (alone,) = [outcome.value for _, outcome in run_jobs(iter(jobs((6,))))]
     assert np.array_equal(travelled.image, alone.image)
     assert (travelled.versions, travelled.curves) == (alone.versions, alone.curves)
+
+
+def test_a_process_starts_no_threads_for_sums() -> None:
+    before = dict(os.environ)
+    (found,) = [
+        outcome.value for _, outcome in run_jobs(iter(jobs((4,))), place=Processes(1), finish=sum_variables)
+    ]
+    assert found == {"1"}
+    assert dict(os.environ) == before
+    # They are read when NumPy is loaded.
+    done = run_script("import sys, texlab_core.batch.child; print('numpy' in sys.modules)")
+    assert done.stdout == "False\n", done.stderr
 
 
 def test_inputs_that_nobody_needs_any_more_are_removed(tmp_path: Path) -> None:

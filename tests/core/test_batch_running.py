@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import re
 from html.parser import HTMLParser
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,9 +34,6 @@ from texlab_core.images.formats.volumes import read_volume
 from texlab_core.images.formats.writing import quantize
 from texlab_core.measures.registry import find_measure, measure_all, measure_quick
 from texlab_core.measures.subject import Subject
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def test_every_combination_is_what_one_call_makes(tmp_path: Path) -> None:
@@ -224,6 +223,19 @@ def test_stopping_keeps_what_is_done_and_reports_it(tmp_path: Path) -> None:
     assert "5 of 12 textures" in (out / "index.html").read_text("utf-8")
     run_batch(plan, out)
     assert files_of(out) == files_of(_fresh(plan, tmp_path / "other"))
+
+
+def test_no_folder_is_looked_through_once_for_each_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked, scan = [], os.scandir
+
+    def watched(path: Any) -> Any:
+        looked.append(Path(path).relative_to(tmp_path / "out"))
+        return scan(path)
+
+    plan = small_plan(tmp_path, methods=["tiling"])
+    monkeypatch.setattr(os, "scandir", watched)
+    assert run_batch(plan, tmp_path / "out").made == 6
+    assert not [path for path in looked if looked.count(path) > 1 and path.parts]
 
 
 def test_two_batches_never_share_a_folder(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from texlab_core.engine.streams import Streams
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.version import __version__
-from texlab_core.work.threads import use_workers, workers
+from texlab_core.work.threads import sums_in_one_thread, use_workers, workers
 
 if TYPE_CHECKING:
     from texlab_core.engine.steps import Step
@@ -289,6 +289,26 @@ def test_the_number_of_threads_is_set_within_the_run_only(exemplar: ImageInput, 
     assert workers() == 1
     with use_workers(None):
         assert 1 <= workers() <= 2
+
+
+def test_sums_are_taken_in_one_thread_until_the_last_one_leaves() -> None:
+    import cv2  # noqa: F401
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    def counts() -> set[int]:
+        return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+
+    with threadpool_limits(2, "blas"):
+        before = counts()
+        first, second = sums_in_one_thread(), sums_in_one_thread()
+        first.__enter__()
+        second.__enter__()
+        assert counts() == {1}, "libraries that SciPy and OpenCV bring count too"
+        first.__exit__(None, None, None)
+        assert counts() == {1}
+        second.__exit__(None, None, None)
+        assert counts() == before
 
 
 def test_the_number_of_threads_belongs_to_its_thread() -> None:

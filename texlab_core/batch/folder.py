@@ -20,7 +20,7 @@ from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.leftovers import is_leftover
 from texlab_core.files.regular import open_appending
-from texlab_core.files.whole import write_pieces, write_together, write_whole
+from texlab_core.files.whole import write_pieces, write_together
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -173,7 +173,7 @@ class BatchFolder:
         """Return the path of an exemplar's small picture, written when it is given; None when there is none."""
         name = f"{THUMBNAILS}/exemplar-{sha256[:20]}.png"
         if thumbnail is not None:
-            write_whole(self.path / name, thumbnail)
+            write_together({self.path / name: thumbnail}, clears=False)
         return name if (self.path / name).is_file() else None
 
     def write(self, name: str, pieces: Iterable[str]) -> Path:

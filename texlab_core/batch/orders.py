@@ -17,12 +17,9 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run, versions
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.work.threads import sums_in_one_thread
 
 if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-    from threadpoolctl import ThreadpoolController
-
     from texlab_core.engine.result import Result
 
 Finish = Callable[["Result"], Any]
@@ -140,7 +137,6 @@ class Workbench:
         self.cache = AnalysisCache(models, max_bytes)
         self._unpacked = Unpacked()
         self._lock = threading.Lock()
-        self._blas: ThreadpoolController | None = None
 
     def carry_out(
         self,
@@ -160,17 +156,18 @@ class Workbench:
         start = time.perf_counter()
         try:
             _check_versions(order)
-            with self._lock:
-                inputs = {role: self._unpacked.get(slip, parcels) for role, slip in order.slips.items()}
             method = find_method(order.method)
-            job = Job(
-                method=order.method,
-                inputs=inputs,
-                params=method.params.from_json(order.params),
-                size=order.size,
-                seed=order.seed,
-            )
-            with self._one_blas_thread():
+            # Every place takes sums in the same order.
+            with sums_in_one_thread():
+                with self._lock:
+                    inputs = {role: self._unpacked.get(slip, parcels) for role, slip in order.slips.items()}
+                job = Job(
+                    method=order.method,
+                    inputs=inputs,
+                    params=method.params.from_json(order.params),
+                    size=order.size,
+                    seed=order.seed,
+                )
                 result = run(job, should_stop=should_stop, cache=self.cache, threads=threads)
                 finished = order.finish(result)
             return Outcome(order.key, finished, elapsed_s=time.perf_counter() - start)
@@ -184,15 +181,6 @@ class Workbench:
             log.exception("A job of a batch failed")
             sentence = f"Something unexpected happened ({type(error).__name__}: {' '.join(str(error).split())})."
         return Outcome(order.key, error=sentence, elapsed_s=time.perf_counter() - start)
-
-    def _one_blas_thread(self) -> AbstractContextManager[object]:
-        # Sums over several threads may be taken in another order; every place takes them in the same one.
-        if self._blas is None:
-            from threadpoolctl import ThreadpoolController
-
-            self._blas = ThreadpoolController()
-        limited: AbstractContextManager[object] = self._blas.limit(limits=1, user_api="blas")
-        return limited
 
 
 def _check_versions(order: Order) -> None:

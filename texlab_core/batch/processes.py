@@ -12,18 +12,16 @@ import contextlib
 import multiprocessing
 import os
 import shutil
-import signal
 import tempfile
-import threading
-from collections import OrderedDict
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.batch.orders import Order, Outcome, Workbench
+from texlab_core.batch import child
+from texlab_core.batch.orders import Order, Outcome
 from texlab_core.batch.parcels import Deposit
 from texlab_core.batch.places import POLL_S
 from texlab_core.errors import Cancelled, InputError, ParamError
@@ -152,10 +150,10 @@ class _Crew:
             self._pool = ProcessPoolExecutor(
                 self._width,
                 mp_context=self._context,
-                initializer=_start,
+                initializer=child.start,
                 initargs=(self._stop, self._begun, str(self._drop.folder)),
             )
-        return self._pool.submit(_carry_out, order)
+        return self._pool.submit(child.carry_out, order)
 
     def _lose(self, order: Order, lost: list[Order]) -> None:
         """Keep an order for another try; there is none where no process has ever begun."""
@@ -207,58 +205,3 @@ class _Drop(Deposit):
 
     def _file(self, name: str) -> Path:
         return self.folder / f"{name}.npz"
-
-
-class _Here:
-    """What one of the processes keeps."""
-
-    def __init__(self, stop: Event, folder: Path) -> None:
-        self.stop = stop
-        self.folder = folder
-        self.bench = Workbench()
-        self.parcels: OrderedDict[str, Parcel] = OrderedDict()
-
-    def parcel(self, name: str) -> Parcel:
-        """Return a parcel, read from the folder unless it is one of the last two."""
-        if name not in self.parcels:
-            with np.load(self.folder / f"{name}.npz", allow_pickle=False) as arrays:
-                self.parcels[name] = {key: _sealed(arrays[key]) for key in arrays.files}
-            while len(self.parcels) > 2:
-                self.parcels.popitem(last=False)
-        return self.parcels[name]
-
-
-def _sealed(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    array.flags.writeable = False
-    return array
-
-
-_here: list[_Here] = []
-
-
-def _start(stop: Event, begun: Event, folder: str) -> None:
-    """Prepare a process: Ctrl-C is for the one that started it, and it ends when that one does."""
-    begun.set()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="texlab-parent").start()
-    with contextlib.suppress(ImportError):
-        import cv2
-
-        # There is a process for each core already.
-        cv2.setNumThreads(1)
-    _here.append(_Here(stop, Path(folder)))
-
-
-def _end_with(sentinel: int) -> None:
-    from multiprocessing.connection import wait as wait_for
-
-    wait_for([sentinel])
-    os._exit(1)
-
-
-def _carry_out(order: Order) -> Outcome:
-    here = _here[-1]
-    parcels = {name: here.parcel(name) for name in order.parcels}
-    return here.bench.carry_out(order, parcels, here.stop.is_set)
