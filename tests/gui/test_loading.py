@@ -11,7 +11,7 @@ import pytest
 from tests.gui.conftest import PATIENCE_MS, hb, ids, wait_idle
 from tests.stub_method import StubParams
 from texlab.app.start import await_threads
-from texlab.columns.status import status_line
+from texlab.columns.status import status_parts
 from texlab.runs import controller
 from texlab_core.errors import Cancelled
 from texlab_core.warming import Need, Warmth, every_need
@@ -64,7 +64,7 @@ def wait_status(qtbot: Any, explorer: Explorer, column_id: int, wanted: str) -> 
 def line(explorer: Explorer, column_id: int) -> str:
     scene = explorer.controller.column_scene(column_id)
     assert scene is not None
-    return status_line(scene)
+    return " · ".join(status_parts(scene))
 
 
 def wait_loading(qtbot: Any, explorer: Explorer, column_id: int) -> None:

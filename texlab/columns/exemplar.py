@@ -74,8 +74,7 @@ class ExemplarView(Cell):
 
     def __init__(self, link: ViewLink, parent: QWidget | None = None) -> None:
         super().__init__(Foot("exemplar-line", has_figures=False), link, 2, parent)
-        self.title = Label("Exemplar")
-        self.title.setObjectName("exemplar-title")
+        self.title = Label("Exemplar", name="exemplar-title")
         self.title.setProperty("role", "heading")
         self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.crop_button = QToolButton()

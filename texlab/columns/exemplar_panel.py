@@ -105,8 +105,7 @@ class ExemplarPanel(QFrame):
         self._ratio = 1.0
         self._auto = Levels()
         layout = QVBoxLayout(self)
-        self.size_label = Label("")
-        self.size_label.setProperty("role", "muted")
+        self.size_label = Label(muted=True)
         layout.addWidget(_heading("Crop"))
         layout.addWidget(self.size_label)
         self.boxes: dict[str, WholeBox] = {}

@@ -66,8 +66,7 @@ class NumbersPopup(QDialog):
             size = f", measured at {scene.measured_size[1]} x {scene.measured_size[0]}"
         heading = Label(f"{title}{size}" if rows else f"{title}: nothing has been measured yet.")
         heading.setProperty("role", "heading")
-        hint = Label("Ctrl+C copies the table.")
-        hint.setProperty("role", "muted")
+        hint = Label("Ctrl+C copies the table.", muted=True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 8)
         layout.addWidget(heading)

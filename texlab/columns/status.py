@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab.style.numbers import duration, remaining
-from texlab.widgets.status_line import SEPARATOR
 from texlab_core.engine.sizes import size_text
 
 if TYPE_CHECKING:
@@ -26,11 +25,6 @@ _SIGNS = {
     "cancelled": "stopped",
     "failed": "",
 }
-
-
-def status_line(scene: ColumnScene) -> str:
-    """Return what is said under a column's picture, as one line."""
-    return SEPARATOR.join(status_parts(scene))
 
 
 def status_parts(scene: ColumnScene) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint, QRect, QRectF, QSize, QTimer, Signal
+from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Signal
 from PySide6.QtWidgets import QApplication, QFrame, QRubberBand, QScrollArea
 
 from texlab.columns.apart import Apart
@@ -14,6 +14,7 @@ from texlab.columns.grid import Grid
 from texlab.columns.titles import titles
 from texlab.state.scene import are_same
 from texlab.style.pictures import Mark
+from texlab.widgets.once import Once
 from texlab.widgets.view_link import ViewLink
 
 if TYPE_CHECKING:
@@ -78,10 +79,7 @@ class Workspace(QScrollArea):
         self._revealed = 0
         self._chosen = 0
         # Cells change their needs one by one (a font, a name): they are placed once.
-        self._placing = QTimer(self)
-        self._placing.setSingleShot(True)
-        self._placing.setInterval(0)
-        self._placing.timeout.connect(self.place)
+        self._placing = Once(self, 0, self.place)
         self.exemplar.enlarged.connect(lambda: self.enlarge(EXEMPLAR))
         self.exemplar.part_shown.connect(self._aim)
         for bar in (self.horizontalScrollBar(), self.verticalScrollBar()):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import QPoint, QRect, QSize, Qt, QTimer
+from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -24,6 +24,7 @@ from texlab.style.text_size import is_teaching
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
+from texlab.widgets.once import Once
 from texlab.widgets.picture_handle import PictureHandle
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import MARGIN, Readout
@@ -140,23 +141,16 @@ class FramedDock(Dock):
         self.body = _Body()
         self.body.setObjectName(f"{self.name}-body")
         self.body.setAccessibleName(self.title or self.name)
-        self._stale = Label(STALE, self.body)
-        self._stale.setObjectName(f"{self.name}-stale")
+        self._stale = Label(STALE, self.body, name=f"{self.name}-stale")
         self._stale.setAutoFillBackground(True)
         self._stale.setBackgroundRole(QPalette.ColorRole.ToolTipBase)
         self._stale.setForegroundRole(QPalette.ColorRole.ToolTipText)
         self._stale.setMargin(3)
         self._stale.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._stale.hide()
-        self._stale_soon = QTimer(self)
-        self._stale_soon.setSingleShot(True)
-        self._stale_soon.setInterval(STALE_MS)
-        self._stale_soon.timeout.connect(lambda: self._mark_stale(True))
-        self._message = Label(self.empty)
-        self._message.setObjectName(f"{self.name}-message")
-        self._message.setProperty("role", "muted")
+        self._stale_soon = Once(self, STALE_MS, lambda: self._mark_stale(True))
+        self._message = Label(self.empty, name=f"{self.name}-message", muted=True, wraps=True)
         self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._message.setWordWrap(True)
         pages = QWidget(self)
         self._stack = QStackedLayout(pages)
         self._stack.addWidget(self._message)

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from texlab.runs.worker import Task, Worker
 from texlab.state.scene import same_but_probe
+from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,10 +70,7 @@ class DockHost(QObject):
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.timeout.connect(self._update)
-        self._look = QTimer(self)
-        self._look.setSingleShot(True)
-        self._look.setInterval(0)
-        self._look.timeout.connect(self._update)
+        self._look = Once(self, 0, self._update)
         if not isinstance(kind, type):
             self._take(kind)
 

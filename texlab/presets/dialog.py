@@ -66,10 +66,7 @@ class PresetDialog(QDialog):
         self.note.setTabChangesFocus(True)
         self.note.setFixedHeight(4 * self.fontMetrics().lineSpacing())
         self.partial = QCheckBox("Only the parameters that differ from the defaults")
-        self.message = Label("")
-        self.message.setObjectName("preset-dialog-message")
-        self.message.setProperty("role", "muted")
-        self.message.setWordWrap(True)
+        self.message = Label(name="preset-dialog-message", muted=True, wraps=True)
         self.message.setMinimumHeight(2 * self.fontMetrics().lineSpacing())
         standard = QDialogButtonBox.StandardButton
         self.buttons = QDialogButtonBox(standard.Ok | standard.Cancel)

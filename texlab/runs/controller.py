@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.column_runner import ColumnRunner, Shared
 from texlab.runs.consent import Consent
@@ -21,6 +21,7 @@ from texlab.runs.worker import Request, Worker
 from texlab.state.difference import difference
 from texlab.state.lesson_scene import NO_LESSON
 from texlab.state.scene import ColumnScene, Scene
+from texlab.widgets.once import Once
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.warming import Need, Warmth, every_need
 
@@ -78,10 +79,7 @@ class Controller(QObject):
         self._warming = Worker("warming", parent=self)
         self._warming.submit(lambda task: self.warmth.serve())
         self._writer = Worker("results", parent=self)
-        self._refresh = QTimer(self)
-        self._refresh.setSingleShot(True)
-        self._refresh.setInterval(0)
-        self._refresh.timeout.connect(self._announce)
+        self._refresh = Once(self, 0, self._announce)
         self.pointing.changed.connect(self._refresh.start)
         self._sweeps = SweepRunner(self.slots, self.warmth, self)
         self._sweeps.changed.connect(self._refresh.start)

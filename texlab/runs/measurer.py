@@ -6,9 +6,10 @@ import logging
 import time
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Signal
 
 from texlab.runs.worker import BEHIND_PICTURES, Worker
+from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
     from texlab.runs.column_run import Measured, MeasureRun
@@ -42,10 +43,7 @@ class Measurer(QObject):
         self._next: MeasureRun | None = None
         self._last_s = 0.0
         self._since_s = self._took_s = 0.0
-        self._rest = QTimer(self)
-        self._rest.setSingleShot(True)
-        self._rest.setInterval(REST_MS)
-        self._rest.timeout.connect(self._measure_next)
+        self._rest = Once(self, REST_MS, self._measure_next)
         self.worker = Worker(name, slots, self, niceness=BEHIND_PICTURES)
         self.worker.progressed.connect(self.told)
         self.worker.finished.connect(self._finished)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject
 
 from texlab.runs.worker import Worker
 from texlab.storage.kept_exemplar import file_name, forget_other_exemplars, has_no_home, keep
@@ -13,6 +13,7 @@ from texlab.storage.kept_inputs import forget_others, keep_inputs, kept_folder
 from texlab.storage.paths import config_dir
 from texlab.storage.sessions import folder, references, writing
 from texlab.storage.settings import OLD_SESSION, session_to_json
+from texlab.widgets.once import Once
 from texlab_core.errors import InputError
 from texlab_core.files.leftovers import sweep
 
@@ -50,10 +51,7 @@ class Autosave(QObject):
         self._swept = False
         self._held: tuple[State, int] | None = None
         self._worker = Worker("autosave", parent=self)
-        self._rest = QTimer(self)
-        self._rest.setSingleShot(True)
-        self._rest.setInterval(REST_MS)
-        self._rest.timeout.connect(self._save)
+        self._rest = Once(self, REST_MS, self._save)
         session.changed.connect(lambda *_: self._rest.start())
         session.selected.connect(lambda _: self._rest.start())
 

@@ -26,12 +26,36 @@ LONGEST_TIP = 4000
 
 
 class Label(QLabel):
-    """A label whose text is never markup."""
+    """A label whose text is never markup.
 
-    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
+    Parameters
+    ----------
+    text
+        What it says at first.
+    name
+        Of the object.
+    muted
+        Whether it is written in the colour of what is less important.
+    wraps
+        Whether long text goes on in another line.
+    """
+
+    def __init__(
+        self,
+        text: str = "",
+        parent: QWidget | None = None,
+        *,
+        name: str = "",
+        muted: bool = False,
+        wraps: bool = False,
+    ) -> None:
         super().__init__(parent)
         self.setTextFormat(Qt.TextFormat.PlainText)
         self.setText(text)
+        self.setObjectName(name)
+        self.setWordWrap(wraps)
+        if muted:
+            self.setProperty("role", "muted")
 
 
 class MarkupLabel(QLabel):

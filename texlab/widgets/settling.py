@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer
+from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from PySide6.QtCore import QObject
 
-class Settling(QTimer):
+
+class Settling(Once):
     """Waits until nothing follows, then says that the edit has ended.
 
     Parameters
@@ -24,10 +26,7 @@ class Settling(QTimer):
     """
 
     def __init__(self, parent: QObject, rest_ms: int, ended: Callable[[], object]) -> None:
-        super().__init__(parent)
-        self.setSingleShot(True)
-        self.setInterval(rest_ms)
-        self.timeout.connect(lambda: ended())
+        super().__init__(parent, rest_ms, lambda: ended())
 
     def end_now(self) -> None:
         """Do not wait any longer, where something is waited for."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSignalBlocker, QTimer
+from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QAbstractSpinBox
 
 from texlab.widgets.number_box import NumberBox
+from texlab.widgets.once import Once
 from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
@@ -33,10 +34,7 @@ class ZoomBox(NumberBox):
         self.setStepType(QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
         self._link = link
         # Panes tell of every step of a drag; one look a turn is enough.
-        self._look = QTimer(self)
-        self._look.setSingleShot(True)
-        self._look.setInterval(0)
-        self._look.timeout.connect(self._show)
+        self._look = Once(self, 0, self._show)
         link.rescaled = self._look.start
         self.valueChanged.connect(link.set_percent)
 

@@ -35,7 +35,6 @@ class BigPanel(QObject):
         super().__init__(window)
         self._window = window
         self._docks = docks
-        self._strip = strip
         self._middle = middle
         self._show = show
         self._messages = messages
@@ -45,8 +44,7 @@ class BigPanel(QObject):
         self.bar.setObjectName("big-panel-bar")
         row = QHBoxLayout(self.bar)
         row.setContentsMargins(6, 2, 6, 2)
-        self.label = Label("The panels have the whole stage.")
-        self.label.setProperty("role", "muted")
+        self.label = Label("The panels have the whole stage.", muted=True)
         self.button = QPushButton("Back to the pictures")
         self.button.setObjectName("big-panel-back")
         self.button.clicked.connect(self.give_back)

@@ -7,11 +7,12 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QPoint, QProcess, Qt, QTimer
+from PySide6.QtCore import QObject, QPoint, QProcess, Qt
 from PySide6.QtWidgets import QMenu
 
 from texlab.columns.history_popup import HistoryPopup
 from texlab.widgets.name_field import NameField
+from texlab.widgets.once import Once
 from texlab.widgets.plain import set_tip
 from texlab.widgets.settling import settle_all
 from texlab.window.batch_desk import BatchDesk
@@ -69,10 +70,7 @@ class Handlers(QObject):
         self.popouts = PopoutDesk(window, exchange.settings, controller)
         self.projects = ProjectDesk(window, exchange.settings, controller)
         self._turned = ""
-        self._turning = QTimer(self)
-        self._turning.setSingleShot(True)
-        self._turning.setInterval(TURN_MS)
-        self._turning.timeout.connect(lambda: self._session.finish_merge(self._turned))
+        self._turning = Once(self, TURN_MS, lambda: self._session.finish_merge(self._turned))
         self._to_column = self._by_column()
         for name, handler in self._by_action().items():
             # An edit that its last key has not ended yet would come back after an undo.

@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
+from PySide6.QtCore import QObject, QPoint, Qt, Signal
 from PySide6.QtWidgets import QWidget
 
 from texlab.state.changes import with_method
+from texlab.widgets.once import Once
 from texlab.widgets.plain import message_box
 from texlab.window.help_window import HelpWindow
 from texlab.window.palette import CommandPalette, Entry, of_actions
@@ -56,10 +57,7 @@ class HelpDesk(QObject):
         self.read_wanted: Callable[[Callable[[], Any], Callable[[Any], None]], None] = lambda read, done: None
         self._palette: CommandPalette | None = None
         # One tab at a time, so that typing goes on.
-        self._more = QTimer(self)
-        self._more.setSingleShot(True)
-        self._more.setInterval(0)
-        self._more.timeout.connect(self._make_more)
+        self._more = Once(self, 0, self._make_more)
         self._late: tuple[str, ...] = ()
 
     def show_help(self, page: str) -> None:

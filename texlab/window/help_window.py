@@ -190,10 +190,7 @@ class HelpWindow(QDialog):
         self.field.setClearButtonEnabled(True)
         tip = "Words that a page must have, or their first letters. Enter opens the best page; F3 goes on"
         set_tip(self.field, tip)
-        self.note = Label("")
-        self.note.setObjectName("help-found")
-        self.note.setProperty("role", "muted")
-        self.note.setWordWrap(True)
+        self.note = Label(name="help-found", muted=True, wraps=True)
         self.note.hide()
         self.list = QListWidget()
         self.list.setObjectName("help-list")

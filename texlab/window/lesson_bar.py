@@ -24,18 +24,14 @@ class LessonBar(QWidget):
         super().__init__()
         self.setObjectName("lesson-bar")
         self.setAccessibleName("Lesson that is given")
-        self.count = Label("")
-        self.count.setObjectName("lesson-count")
-        self.sentence = Label("")
-        self.sentence.setObjectName("lesson-sentence")
+        self.count = Label(name="lesson-count")
+        self.sentence = Label(name="lesson-sentence")
         # A font of its own would be taken back by the style sheet, which gives it its size.
         self.sentence.setProperty("role", "sentence")
         self.sentence.setWordWrap(True)
         self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-        self.readiness = Label("")
-        self.readiness.setObjectName("lesson-readiness")
-        self.readiness.setProperty("role", "muted")
+        self.readiness = Label(name="lesson-readiness", muted=True)
         for name, sign in (("lesson-back", "◀"), ("lesson-next", "▶"), ("lesson-leave", "✕")):
             # A tool button shows the icon's text; menus and the palette keep the whole name.
             actions[name].setIconText(sign)

@@ -22,6 +22,7 @@ from texlab.form.panel import ParametersView
 from texlab.style.icons import application_icon
 from texlab.style.theme import apply_theme
 from texlab.widgets.mime import brought_by, take_copy
+from texlab.widgets.once import Once
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.big_panel import BigPanel
 from texlab.window.commands import COMMANDS, make_actions
@@ -71,10 +72,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
         # While an edge is dragged, text waits.
-        self._text = QTimer(self)
-        self._text.setSingleShot(True)
-        self._text.setInterval(100)
-        self._text.timeout.connect(self._follow_height)
+        self._text = Once(self, 100, self._follow_height)
         self.setGeometry(*first_window(self._available()))
         self.settings = settings
         self.themes = themes

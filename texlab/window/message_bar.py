@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from PySide6.QtCore import QEvent, QObject, QRect, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QRect, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QToolButton, QWidget
 
+from texlab.widgets.once import Once
 from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
@@ -25,9 +26,7 @@ class MessageBar(QFrame):
         super().__init__(parent)
         self.setObjectName("message-bar")
         self.setAccessibleName("Message")
-        self.label = Label()
-        self.label.setObjectName("message")
-        self.label.setWordWrap(True)
+        self.label = Label(name="message", wraps=True)
         self.label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         close = QToolButton()
         close.setObjectName("message-close")
@@ -39,10 +38,7 @@ class MessageBar(QFrame):
         layout.setContentsMargins(10, 4, 6, 4)
         layout.addWidget(self.label, 1)
         layout.addWidget(close)
-        self._timer = QTimer(self)
-        self._timer.setSingleShot(True)
-        self._timer.setInterval(NEWS_MS)
-        self._timer.timeout.connect(self.hide)
+        self._timer = Once(self, NEWS_MS, self.hide)
         self._kind: Literal["problem", "news"] = "news"
         self._colours = {"problem": "#b3261e", "news": "#0b62b0"}
         self._ground = "#e9e9e6"

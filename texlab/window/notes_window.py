@@ -193,8 +193,7 @@ class NotesWindow(QWidget):
 
 
 def _label(name: str, role: str) -> Label:
-    label = Label("")
-    label.setObjectName(name)
+    label = Label(name=name)
     label.setProperty("role", role)
     label.setWordWrap(True)
     label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)

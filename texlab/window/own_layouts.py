@@ -240,10 +240,9 @@ class LayoutsDialog(QDialog):
         self.delete = QPushButton("Delete")
         self.back = QPushButton("Bring back")
         self.done_button = QPushButton("Close")
-        self.message = Label("Panels, tabs and how their controls stand are kept.")
-        self.message.setObjectName("layouts-message")
-        self.message.setProperty("role", "muted")
-        self.message.setWordWrap(True)
+        self.message = Label(
+            "Panels, tabs and how their controls stand are kept.", name="layouts-message", muted=True, wraps=True
+        )
         for widget, part, label, tip in (
             (self.name, "name", "Name", f"1 to {MAX_NAME} characters; one of the same name is replaced"),
             (self.keep, "keep", "Keep", "Keep how the window is arranged now"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.widgets.hidden_picture import HiddenPicture
+from texlab.widgets.once import Once
 from texlab.widgets.plain import Label, set_tip
 from texlab.window.popout_review import PopoutReview
 from texlab.window.popout_setup import WIDEST, PopoutSetup, action_button
@@ -60,11 +61,7 @@ class PopoutDialog(QDialog):
         self.setWindowTitle("Pop-out test")
         self._made: Made | None = None
         self._place = 0
-        self._sound = False
-        self._pause = QTimer(self)
-        self._pause.setSingleShot(True)
-        self._pause.setInterval(PAUSE_MS)
-        self._pause.timeout.connect(self._show_picture)
+        self._pause = Once(self, PAUSE_MS, self._show_picture)
         self.pages = QStackedWidget()
         self.pages.setObjectName("popout-pages")
         self.setup = PopoutSetup()
@@ -86,9 +83,11 @@ class PopoutDialog(QDialog):
         page = QWidget()
         page.setMaximumWidth(WIDEST)
         layout = QVBoxLayout(page)
-        words = Label("All pictures are made before the first is shown: how long one takes would tell its method.")
-        words.setObjectName("popout-making")
-        words.setWordWrap(True)
+        words = Label(
+            "All pictures are made before the first is shown: how long one takes would tell its method.",
+            name="popout-making",
+            wraps=True,
+        )
         self.bar = QProgressBar()
         self.bar.setObjectName("popout-bar")
         self.bar.setAccessibleName("Progress")
@@ -105,9 +104,7 @@ class PopoutDialog(QDialog):
         page = QWidget()
         page.setMaximumWidth(WIDEST)
         layout = QVBoxLayout(page)
-        self.how = Label("")
-        self.how.setObjectName("popout-how")
-        self.how.setWordWrap(True)
+        self.how = Label(name="popout-how", wraps=True)
         self.begin_button = QPushButton("Begin")
         self.begin_button.setObjectName("popout-begin")
         self.begin_button.clicked.connect(lambda _=False: self._begin())
@@ -122,8 +119,7 @@ class PopoutDialog(QDialog):
         self.stage = HiddenPicture()
         self.stage.pointed.connect(lambda row, column, seconds: self._take(row, column, seconds))
         self.stage.gave_up.connect(lambda seconds: self._take(None, None, seconds))
-        self.count = Label("")
-        self.count.setObjectName("popout-count")
+        self.count = Label(name="popout-count")
         self.untold_button = QPushButton("I cannot tell (Space)")
         self.untold_button.setObjectName("popout-untold")
         self.untold_button.setAutoDefault(False)
@@ -148,9 +144,7 @@ class PopoutDialog(QDialog):
         layout = QVBoxLayout(page)
         layout.setContentsMargins(0, 0, 0, 0)
         self.review = PopoutReview()
-        self.message = Label("")
-        self.message.setObjectName("popout-message")
-        self.message.setWordWrap(True)
+        self.message = Label(name="popout-message", wraps=True)
         buttons = QDialogButtonBox()
         self.table_button = action_button(buttons, "Export CSV ...", "popout-export")
         set_tip(self.table_button, "Write every picture of this test with its answer")

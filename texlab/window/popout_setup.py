@@ -106,9 +106,7 @@ class PopoutSetup(QWidget):
         for box in (self.repeats, self.feather, self.seed):
             box.valueChanged.connect(self.edit)
         self.share.currentIndexChanged.connect(self.edit)
-        self.foreseen = Label("")
-        self.foreseen.setObjectName("popout-foreseen")
-        self.foreseen.setWordWrap(True)
+        self.foreseen = Label(name="popout-foreseen", wraps=True)
         self.foreseen.setMinimumHeight(3 * self.fontMetrics().lineSpacing())
         form.addRow(self.foreseen)
         buttons = QDialogButtonBox()

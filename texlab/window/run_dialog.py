@@ -61,9 +61,7 @@ class RunDialog(QDialog):
         self.bar.setObjectName(f"{name}-bar")
         self.bar.setAccessibleName("Progress")
         self.bar.setRange(0, _STEPS)
-        self.message = Label("")
-        self.message.setObjectName(f"{name}-message")
-        self.message.setWordWrap(True)
+        self.message = Label(name=f"{name}-message", wraps=True)
         self.message.setMinimumSize(width, 2 * self.fontMetrics().lineSpacing())
 
     def add_row(

@@ -31,16 +31,16 @@ class StatusBar(QStatusBar):
 
     def __init__(self) -> None:
         super().__init__()
-        self.pixel = _label("status-pixel")
+        self.pixel = Label(name="status-pixel")
         self.pixel.setContentsMargins(6, 0, 0, 0)
-        self.errand = _label("status-errand")
+        self.errand = Label(name="status-errand")
         self.errand_bar = QProgressBar()
         self.errand_bar.setObjectName("status-errand-progress")
         self.errand_bar.setAccessibleName("Opening or saving")
         self.errand_bar.setRange(0, 0)
         self.errand_bar.setFixedWidth(60)
-        self.jobs = _label("status-jobs", muted=True)
-        self.memory = _label("status-memory", muted=True)
+        self.jobs = Label(name="status-jobs", muted=True)
+        self.memory = Label(name="status-memory", muted=True)
         set_tip(self.memory, "Memory used by the program")
         self.addWidget(self.pixel, 1)
         for each in (self.errand, self.errand_bar, self.jobs, self.memory):
@@ -55,15 +55,6 @@ class StatusBar(QStatusBar):
 
     def add_zoom(self, label: str, box: QWidget) -> None:
         """Show a box with a word before it."""
-        word = Label(label)
-        word.setProperty("role", "muted")
+        word = Label(label, muted=True)
         self.insertPermanentWidget(1, word)
         self.insertPermanentWidget(2, box)
-
-
-def _label(name: str, *, muted: bool = False) -> Label:
-    label = Label("")
-    label.setObjectName(name)
-    if muted:
-        label.setProperty("role", "muted")
-    return label

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import shiboken6
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QDockWidget, QScrollArea, QTabBar, QWidget
+
+from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -101,10 +103,7 @@ class FocusRing(QWidget):
         self.colour = QColor("#0b62b0")
         self.around: QWidget | None = None
         self._wanted: QWidget | None = None
-        self._soon = QTimer(self)
-        self._soon.setSingleShot(True)
-        self._soon.setInterval(0)
-        self._soon.timeout.connect(self._show_wanted)
+        self._soon = Once(self, 0, self._show_wanted)
         self.hide()
 
     def show_around(self, widget: QWidget) -> None:

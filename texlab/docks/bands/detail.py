@@ -37,8 +37,7 @@ class BandDetail(QWidget):
         self.setAccessibleName("Large band")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._shown: BandLarge | None = None
-        self.title = Label("")
-        self.title.setObjectName("pyramid-detail-title")
+        self.title = Label(name="pyramid-detail-title")
         self.title.setProperty("role", "heading")
         self.close_button = QToolButton()
         self.close_button.setObjectName("pyramid-detail-close")

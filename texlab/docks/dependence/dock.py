@@ -107,9 +107,7 @@ class DependenceDock(FramedDock):
         self.ready.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.ready.setMinimumContentsLength(10)
         self.ready.view().setMinimumWidth(self.ready.view().sizeHintForColumn(0) + 24)
-        self.pair_name = Label("")
-        self.pair_name.setObjectName("dependence-pair")
-        self.pair_name.setProperty("role", "muted")
+        self.pair_name = Label(name="dependence-pair", muted=True)
         # A long line must not widen the window.
         self.pair_name.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.readout = self.add_readout()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -126,35 +127,45 @@ class FillTools(FramedDock):
 
     # For the panel.
 
+    @abstractmethod
     def _where_changed(self) -> None:
-        raise NotImplementedError
+        """Show what is filled: this picture by itself, or holes of the column's result."""
 
+    @abstractmethod
     def _open_other(self) -> None:
-        raise NotImplementedError
+        """Open the picture that is copied from."""
 
+    @abstractmethod
     def _undo(self) -> None:
-        raise NotImplementedError
+        """Take the last stroke or fill back."""
 
+    @abstractmethod
     def _fill(self) -> None:
-        raise NotImplementedError
+        """Fill the hole."""
 
+    @abstractmethod
     def _again(self) -> None:
-        raise NotImplementedError
+        """Fill it once more with the next seed."""
 
+    @abstractmethod
     def _grow(self) -> None:
-        raise NotImplementedError
+        """Grow the picture to the size in the tool bar."""
 
+    @abstractmethod
     def _grow_by(self, margins: Any) -> None:
-        raise NotImplementedError
+        """Grow the picture by margins: top, bottom, left, right."""
 
+    @abstractmethod
     def _save(self) -> None:
-        raise NotImplementedError
+        """Save the filled picture."""
 
+    @abstractmethod
     def _use(self) -> None:
-        raise NotImplementedError
+        """Make the filled picture the exemplar."""
 
+    @abstractmethod
     def _update(self, *_: object) -> None:
-        raise NotImplementedError
+        """Show what can be done now."""
 
     # What is the same for every picture.
 

@@ -68,10 +68,7 @@ class FindingsDock(FramedDock):
         self._column: ColumnScene | None = None
         self._tried: Tried | None = None
         self.apply = self.add_button("try", "Try this", "Apply what is to be tried to the column", self._try)
-        self.outcome = Label("")
-        self.outcome.setObjectName("findings-outcome")
-        self.outcome.setWordWrap(True)
-        self.outcome.setProperty("role", "muted")
+        self.outcome = Label(name="findings-outcome", muted=True, wraps=True)
         self.list = QListWidget()
         self.list.setObjectName("findings-list")
         self.list.setAccessibleName("Findings")
@@ -81,9 +78,7 @@ class FindingsDock(FramedDock):
         self.list.setWordWrap(True)
         self.list.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.list.currentRowChanged.connect(self._choose)
-        self.text = Label("")
-        self.text.setObjectName("findings-text")
-        self.text.setWordWrap(True)
+        self.text = Label(name="findings-text", wraps=True)
         self.text.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         words = QScrollArea()

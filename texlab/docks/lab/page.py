@@ -98,8 +98,7 @@ class LabPage(FramedDock):
 
     def make_words(self) -> Label:
         """Return the place for words about the pictures."""
-        self.words = Label("")
-        self.words.setWordWrap(True)
+        self.words = Label(wraps=True)
         return self.words
 
 

@@ -31,8 +31,7 @@ class StepWords(QScrollArea):
         self.reveal.setCheckable(True)
         self.reveal.toggled.connect(self.answer.setVisible)
         set_tip(self.reveal, "The answer to the question, once everybody has had a try")
-        self.slider_label = Label("")
-        self.slider_label.setObjectName("lessons-series-value")
+        self.slider_label = Label(name="lessons-series-value")
         self.slider = Slider("Value of the step", self._said)
         self.slider.setObjectName("lessons-series")
         self.slider.valueChanged.connect(self._slid)
@@ -91,9 +90,7 @@ class StepWords(QScrollArea):
 
 def words(name: str, *, muted: bool = False) -> Label:
     """Return a label of several lines whose text can be selected."""
-    label = Label("")
-    label.setObjectName(name)
-    label.setWordWrap(True)
+    label = Label(name=name, wraps=True)
     label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
     if muted:
         label.setProperty("role", "muted")

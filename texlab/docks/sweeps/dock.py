@@ -74,9 +74,7 @@ class SweepsDock(FramedDock):
         self.sheet.zoom_wanted.connect(self._zoom)
         self.sheet.compared.connect(self.compare)
         self.pair: PairView | None = None
-        self.heading = Label("")
-        self.heading.setObjectName("sweeps-heading")
-        self.heading.setProperty("role", "muted")
+        self.heading = Label(name="sweeps-heading", muted=True)
         # A long line must not widen the window.
         self.heading.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.progress = QProgressBar()

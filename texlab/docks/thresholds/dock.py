@@ -78,23 +78,15 @@ class ThresholdsDock(FramedDock):
         self._measured: binds.Answered | None = None
         self.distances = DistanceView("thresholds-distances")
         self._build_controls()
-        self.cell_name = Label()
-        self.cell_name.setObjectName("thresholds-cell")
-        self.cell_name.setWordWrap(True)
-        self.passing = Label()
-        self.passing.setObjectName("thresholds-passing")
-        self.passing.setWordWrap(True)
-        self.measures = Label()
-        self.measures.setObjectName("thresholds-measures")
-        self.measures.setWordWrap(True)
+        self.cell_name = Label(name="thresholds-cell", wraps=True)
+        self.passing = Label(name="thresholds-passing", wraps=True)
+        self.measures = Label(name="thresholds-measures", wraps=True)
         set_tip(
             self.measures,
             "Of the column's newest result: how many candidates a typical pixel was chosen from, and the share of "
             "neighbouring pixels that were copied together",
         )
-        self.binding_words = Label()
-        self.binding_words.setObjectName("thresholds-binding")
-        self.binding_words.setWordWrap(True)
+        self.binding_words = Label(name="thresholds-binding", wraps=True)
         self.law = LawLine("thresholds_law")
         self.law.edited.connect(self._edit_law)
         beside = QWidget()

@@ -50,8 +50,7 @@ class LawLine(QWidget):
             knob.edited.connect(lambda value, final, key=field.name: self.edited.emit(key, value, final))
             layout.addWidget(Label(SIGNS[field.name]))
             layout.addWidget(knob, 1)
-        self.words = Label("")
-        self.words.setObjectName(f"{name}_words")
+        self.words = Label(name=f"{name}_words")
         # A deep pyramid must not widen the window; the tip has all of it.
         self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         layout.addWidget(self.words, 2)

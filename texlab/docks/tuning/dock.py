@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout
 
 from texlab.docks.base import Question
@@ -26,6 +26,7 @@ from texlab.state.intentions import RunTuning, StopTuning, TakeCell
 from texlab.state.scene import Scene, are_same
 from texlab.state.tuning import TuningPlan
 from texlab.style.text_size import grow_with_text
+from texlab.widgets.once import Once
 from texlab.widgets.picture_area import PictureArea
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import SERIES, Plot
@@ -61,10 +62,7 @@ class TuningDock(FramedDock):
         """Make the controls, the plot, and the place of the picture."""
         self._scene = Scene()
         self._drawn: tuple[Any, ...] = ()
-        self._redraw = QTimer(self)
-        self._redraw.setSingleShot(True)
-        self._redraw.setInterval(REDRAW_MS)
-        self._redraw.timeout.connect(self._show_all)
+        self._redraw = Once(self, REDRAW_MS, self._show_all)
         self.points: list[Placed] = []
         self.over: Placed | None = None
         self._build_line()
@@ -74,9 +72,7 @@ class TuningDock(FramedDock):
         self.plot.clicked.connect(self._clicked)
         self.picture = PictureArea("tuning-picture", "", "The result of the point under the pointer")
         grow_with_text(self.picture, TOLD, self.picture.setFixedWidth)
-        self.told = Label("")
-        self.told.setObjectName("tuning-told")
-        self.told.setWordWrap(True)
+        self.told = Label(name="tuning-told", wraps=True)
         self.told.setAlignment(Qt.AlignmentFlag.AlignTop)
         grow_with_text(self.told, TOLD, self.told.setFixedWidth)
         self.progress = QProgressBar()
@@ -87,9 +83,7 @@ class TuningDock(FramedDock):
         policy = self.progress.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.progress.setSizePolicy(policy)
-        self.status = Label("")
-        self.status.setObjectName("tuning-status")
-        self.status.setProperty("role", "muted")
+        self.status = Label(name="tuning-status", muted=True)
         # A long line must not widen the window.
         self.status.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         left = QVBoxLayout()
