@@ -1,12 +1,14 @@
-"""Bars of subbands and grids of patches: what is painted where, mouse and keyboard."""
+"""Bars of subbands and grids of patches: what is painted where, mouse and keyboard; labels and timers."""
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt
 
 from texlab.docks.explain.band_bars import BandBars, Bar
 from texlab.docks.explain.patch_grid import Patch, PatchGrid
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.once import Once
+from texlab.widgets.plain import Label
 
 BARS = (
     Bar("high", "", 0.02, 0.01, "high-pass residual"),
@@ -145,3 +147,29 @@ def test_without_anything_to_show(qtbot, make):
     view.grab()
     qtbot.keyClick(view, Qt.Key.Key_Right)
     assert view.selected == -1
+
+
+def test_a_label_is_made_as_it_is_to_be(qtbot):
+    plain, made = Label("a < b"), Label("What was found", name="found", muted=True, wraps=True)
+    for each in (plain, made):
+        qtbot.addWidget(each)
+    assert (plain.text(), plain.objectName(), plain.wordWrap(), plain.property("role")) == (
+        "a < b",
+        "",
+        False,
+        None,
+    )
+    assert (made.objectName(), made.wordWrap(), made.property("role")) == ("found", True, "muted")
+
+
+def test_a_timer_that_fires_once_begins_anew_with_each_start(qtbot):
+    fired = []
+    parent = QObject()
+    once = Once(parent, 20, lambda: fired.append(len(fired)))
+    assert not once.isActive()
+    once.start()
+    once.start()
+    qtbot.waitUntil(lambda: bool(fired))
+    assert (fired, once.isActive(), once.isSingleShot(), once.interval()) == ([0], False, True, 20)
+    once.start()
+    qtbot.waitUntil(lambda: len(fired) == 2)
