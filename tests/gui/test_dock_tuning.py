@@ -264,7 +264,7 @@ def test_take_gives_the_column_what_was_found(qtbot, bench):
     qtbot.waitUntil(lambda: bench.controller.scene().tuning.status in ("finished", "failed"), timeout=PATIENCE_MS)
     tuning = bench.controller.scene().tuning
     assert tuning.status == "finished", tuning.problem
-    qtbot.waitUntil(lambda: dock._scene.tuning.found is not None, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: dock.scene.tuning.found is not None, timeout=PATIENCE_MS)
     assert dock.take_button.isEnabled() == bool(tuning.found.changes)
     dock.take()
     assert bench.session.selected_column.params == tuning.found.found

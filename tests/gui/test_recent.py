@@ -1,5 +1,10 @@
 """The last few values, and keys by identity."""
 
+import gc
+import threading
+
+import numpy as np
+
 from texlab.docks.recent import Recent, Same
 
 
@@ -28,3 +33,69 @@ def test_same_is_identity():
     assert Same(first) != Same(second)
     assert Same(first) != first
     assert len({Same(first), Same(first), Same(second)}) == 2
+
+
+def test_same_as_nothing_once_it_has_gone():
+    pixels = np.zeros(3)
+    key, other = Same(pixels), Same(pixels)
+    table = {key: "made"}
+    assert (key.value is pixels, key.gone, key == other) == (True, False, True)
+    del pixels
+    assert (key.value, key.gone, key == other) == (None, True, False)
+    assert Same(np.zeros(3)) != key
+    # It can still be taken out of a table.
+    assert table.pop(key) == "made"
+    assert Same(None) == Same(None)
+    assert not Same(None).gone
+
+
+def test_what_was_made_of_what_has_gone_goes():
+    recent = Recent(3)
+    kept, lost = np.zeros(3), np.zeros(3)
+    for key in ((Same(kept), 1), ("a", (Same(lost), Same(kept))), (Same(lost), 2)):
+        recent.get(key, lambda key=key: key)
+    assert len(recent) == 3
+    del lost, key
+    assert len(recent) == 1
+    assert recent.get((Same(kept), 1), lambda: "again") == (Same(kept), 1)
+
+
+def test_what_goes_while_it_is_used_is_not_kept():
+    recent = Recent(3)
+    held = [np.zeros(3)]
+    key = Same(held[0])
+    assert recent.get(key, lambda: held.clear() or "made") == "made"
+    assert len(recent) == 0
+
+
+def test_what_goes_while_a_value_is_kept_goes_after_it():
+    recent = Recent(2, weigh=lambda value: value() or 1)
+    held = [np.zeros(3)]
+
+    def weigh():
+        # In the middle of keeping another value.
+        held.clear()
+
+    recent.get(Same(held[0]), lambda: weigh)
+    recent.get("other", lambda: lambda: 1)
+    assert len(recent) == 1
+    assert recent.get("other", lambda: "again") != "again"
+
+
+def test_several_threads_keep_and_lose_at_once():
+    recent = Recent(4)
+
+    def work():
+        for _ in range(300):
+            pixels = np.zeros(2)
+            key = Same(pixels)
+            assert recent.get(key, lambda: 1) == 1
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    gc.collect()
+    recent.get("last", lambda: 0)
+    assert len(recent) == 1

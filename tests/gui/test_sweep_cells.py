@@ -229,13 +229,13 @@ def test_other_columns_take_the_cells(qtbot, bench):
     dock, session = here.dock, here.session
     complete(qtbot, dock)
     session.select(3)
-    qtbot.waitUntil(lambda: dock._column.id == 3)
+    qtbot.waitUntil(lambda: dock.scene.selected_id == 3)
     click_cell(qtbot, dock, 1)
     assert session.state.column(3).params.level == 0.8
     assert session.state.column(1).params.level == 0.5
     # Beside another method, the column that the sweep was started for takes them.
     session.select(2)
-    qtbot.waitUntil(lambda: dock._column.id == 2)
+    qtbot.waitUntil(lambda: dock.scene.selected_id == 2)
     assert dock.sheet.canvas.marked is None
     click_cell(qtbot, dock, 2)
     assert session.state.column(1).params.level == 1.6

@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from texlab.state.intentions import TakePicture, TakeStage
+from texlab.state.scene import Scene
 from texlab.widgets.control_settings import control_settings, take_control_settings
 from texlab.widgets.own_keys import OwnKeys
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from PySide6.QtGui import QContextMenuEvent
 
-    from texlab.state.scene import Scene
     from texlab.style.theme import Theme
 
 
@@ -27,6 +27,8 @@ class Dock(OwnKeys, QWidget):
     A dock gets frozen data and sends frozen values; it holds no controller, worker or session, never computes and
     never writes.
 
+    - ``scene`` is the newest scene; a dock keeps no column, result or picture of it anywhere else, unless it
+      lets go of that in ``forget``.
     - ``show_scene`` shows at once what needs no computing. It is called for every newer scene while the dock is
       seen, so what it shows follows from the scene alone: whatever happened while the dock was hidden is in it.
     - ``question`` says (quickly, from the scene and the dock's own controls) what is to be computed in a
@@ -53,11 +55,18 @@ class Dock(OwnKeys, QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.scene = Scene()
+        """The newest one, also while the dock is not seen: what goes from the window is not held here."""
         self.setObjectName(f"dock-{self.name}")
         self.setAccessibleName(self.title)
 
+    def note_scene(self, scene: Scene) -> None:
+        """Take note of the newest scene, whether the dock is seen or not."""
+        self.scene = scene
+
     def show_scene(self, scene: Scene) -> None:
         """Show what needs no computing."""
+        self.note_scene(scene)
 
     def question(self, scene: Scene) -> Question | None:
         """Return what to compute for this scene, or None when there is nothing to show."""

@@ -25,6 +25,7 @@ from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.once import Once
+from texlab.widgets.pane import Pane
 from texlab.widgets.picture_handle import PictureHandle
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.readout import MARGIN, Readout
@@ -230,6 +231,8 @@ class FramedDock(Dock):
         self._mark_stale(False)
         self._message.setText(self.why or reason or self.empty)
         self._stack.setCurrentWidget(self._message)
+        if self.heavy:
+            self.clear_shown()
         self.tell_again()
 
     def present_waiting(self) -> None:
@@ -246,7 +249,13 @@ class FramedDock(Dock):
         self._mark_stale(False)
         self._message.setText(WORKING)
         self._stack.setCurrentWidget(self._message)
+        self.clear_shown()
         self.drop_kept()
+
+    def clear_shown(self) -> None:
+        """Empty what shows pictures of an answer that there is no more."""
+        for pane in self.body.findChildren(Pane):
+            pane.show_nothing()
 
     def _mark_stale(self, stale: bool) -> None:
         self._stale_soon.stop()

@@ -12,7 +12,7 @@ from texlab.state.scene import same_but_probe
 from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from PySide6.QtWidgets import QDockWidget
 
@@ -62,8 +62,8 @@ class DockHost(QObject):
         self._scene: Scene | None = None
         self._asked: tuple[Any, ...] | None = None
         self._computing = False
-        # Whether the dock has an answer.
-        self._holds = False
+        # Whether the dock has been told anything since it forgot.
+        self._knows = False
         self._dirty = False
         self._was_seen: bool | None = None
         self._rested = QDeadlineTimer(0)
@@ -154,14 +154,16 @@ class DockHost(QObject):
     def show_scene(self, scene: Scene) -> None:
         """Take a newer scene."""
         before, self._scene = self._scene, scene
+        if self._dock is not None:
+            self._dock.note_scene(scene)
         moved = before is not None and not self.kind.follows_pointer and same_but_probe(scene, before)
         if not moved:
             self._update()
-        if before is None or moved or self._dock is None or not self._holds or self.seen:
+        if before is None or moved or self._dock is None or not self._knows or self.seen:
             return
-        if _is_about_others(scene, before):
+        if _has_lost(scene, before):
             # A tab behind another one would keep its pictures, and all that was computed from them, for good.
-            self._asked, self._holds = None, False
+            self._asked, self._knows = None, False
             self._dock.forget()
 
     def leave(self) -> None:
@@ -209,6 +211,7 @@ class DockHost(QObject):
                 self._drop()
         if self._scene is None or not seen:
             return
+        self._knows = True
         dock.show_scene(self._scene)
         if self._computing:
             self._dirty = True
@@ -243,7 +246,6 @@ class DockHost(QObject):
 
     def _answered(self, answer: Any) -> None:
         self._computing = False
-        self._holds = True
         self._rested.setRemainingTime(self.dock.rest_ms)
         self.dock.present(answer)
         self._again()
@@ -259,9 +261,13 @@ class DockHost(QObject):
             self._update()
 
 
-def _is_about_others(scene: Scene, before: Scene) -> bool:
-    """Whether the exemplar is another one, or the chosen column's result."""
-    if scene.exemplar is not before.exemplar:
-        return True
-    now, then = scene.selected, before.selected
-    return now is not None and then is not None and now.result is not then.result
+def _has_lost(scene: Scene, before: Scene) -> bool:
+    """Whether the exemplar of before has gone, or what any column showed: its picture, its result, its stages."""
+    now, then = ({id(each) for each in _shown(which)} for which in (scene, before))
+    return not then <= now
+
+
+def _shown(scene: Scene) -> Iterator[object]:
+    yield scene.exemplar
+    for column in scene.columns:
+        yield from (column.image, column.result, *column.frames)

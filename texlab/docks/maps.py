@@ -163,13 +163,6 @@ class MapsDock(FramedDock):
 
         return Question((self.name, Same(result), name, region), compute)
 
-    def drop_kept(self) -> None:
-        """Empty the pictures."""
-        super().drop_kept()
-        self.pane.set_overlay(None)
-        for pane in (self.pane, self.key):
-            pane.set_picture(None)
-
     def show_answer(self, answer: MapsAnswer) -> None:
         """Show the map with its legend."""
         self.readout.setText("")

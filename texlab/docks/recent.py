@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
+import weakref
+from collections import OrderedDict, deque
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable
+    from collections.abc import Callable, Hashable, Iterator
 
 ValueT = TypeVar("ValueT")
 
@@ -16,22 +17,52 @@ MOST = 12
 
 
 class Same:
-    """Makes any object a part of a key: equal only to itself, and alive as long as the key."""
+    """Makes any object a part of a key: equal only to itself, and to nothing once the object has gone.
 
-    __slots__ = ("value",)
+    It does not keep the object alive, where the object's type allows that: a key that waits for another question
+    would hold a whole result.
+    """
+
+    __slots__ = ("_hash", "_held", "_reference")
 
     def __init__(self, value: object) -> None:
-        self.value = value
+        self._hash = id(value)
+        self._held: object = None
+        self._reference: weakref.ref[Any] | None = None
+        try:
+            self._reference = weakref.ref(value)
+        except TypeError:
+            # Tuples, numbers and None.
+            self._held = value
+
+    @property
+    def value(self) -> Any:
+        """The object; None when it has gone."""
+        return self._held if self._reference is None else self._reference()
+
+    @property
+    def gone(self) -> bool:
+        """Whether the object has gone."""
+        return self._reference is not None and self._reference() is None
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.value is self.value
+        if self is other:
+            return True
+        return isinstance(other, Same) and not self.gone and not other.gone and other.value is self.value
 
     def __hash__(self) -> int:
-        return id(self.value)
+        return self._hash
+
+    def watch(self, gone: Callable[[weakref.ref[Any]], None]) -> weakref.ref[Any] | None:
+        """Return what calls ``gone`` when the object goes, as long as it is held; None when the object stays."""
+        value = self.value
+        return None if self._reference is None or value is None else weakref.ref(value, gone)
 
 
 class Recent:
     """Values by key, the most recently used ones, as many as weigh no more than ``capacity`` together.
+
+    What was made of something that has gone goes too: a value whose key holds a :class:`Same` of it.
 
     Parameters
     ----------
@@ -40,7 +71,7 @@ class Recent:
     weigh
         What one weighs; 1 without it.
     most
-        How many there may be, whatever they weigh: keys hold what they tell apart.
+        How many there may be, whatever they weigh.
     """
 
     def __init__(self, capacity: float, weigh: Callable[[Any], float] | None = None, most: int = MOST) -> None:
@@ -48,25 +79,45 @@ class Recent:
         self._most = most
         self._weigh = weigh or (lambda value: 1.0)
         self._values: OrderedDict[Hashable, Any] = OrderedDict()
+        self._watched: dict[Hashable, tuple[weakref.ref[Any], ...]] = {}
+        # Keys of what has gone; objects go at any moment, also while the lock is held.
+        self._gone: deque[Hashable] = deque()
         self._lock = threading.Lock()
 
     def get(self, key: Hashable, make: Callable[[], ValueT]) -> ValueT:
         """Return the value of this key, making it (outside the lock) when it is not there.
 
-        The newest two values stay, whatever they weigh.
+        The newest two values stay, whatever they weigh, as long as what they were made of is there.
         """
-        with self._lock:
-            if key in self._values:
-                self._values.move_to_end(key)
-                found: ValueT = self._values[key]
-                return found
+        known = self._find(key)
+        if known is not None:
+            found: ValueT = known[0]
+            return found
         made = make()
+        watched = self._watch(key)
         with self._lock:
             kept: ValueT = self._values.setdefault(key, made)
+            self._watched.setdefault(key, watched)
             weight = sum(self._weigh(value) for value in self._values.values())
             while (weight > self._capacity or len(self._values) > self._most) and len(self._values) > 2:
-                weight -= self._weigh(self._values.popitem(last=False)[1])
+                oldest = next(iter(self._values))
+                weight -= self._weigh(self._values[oldest])
+                self._drop(oldest)
+        if any(each.gone for each in _parts(key)):
+            # It went before it was kept.
+            self._gone.append(key)
+        self._drop_gone()
         return kept
+
+    def _find(self, key: Hashable) -> tuple[Any] | None:
+        try:
+            with self._lock:
+                if key not in self._values:
+                    return None
+                self._values.move_to_end(key)
+                return (self._values[key],)
+        finally:
+            self._drop_gone()
 
     def __len__(self) -> int:
         return len(self._values)
@@ -75,3 +126,39 @@ class Recent:
         """Forget everything."""
         with self._lock:
             self._values.clear()
+            self._watched.clear()
+
+    def _watch(self, key: Hashable) -> tuple[weakref.ref[Any], ...]:
+        """Notice when a part of a key goes."""
+        # A thread may still hold the reference when nobody holds this any more.
+        mine = weakref.ref(self)
+
+        def gone(_: weakref.ref[Any]) -> None:
+            recent = mine()
+            if recent is not None:
+                recent._gone.append(key)
+                recent._drop_gone()
+
+        return tuple(found for each in _parts(key) if (found := each.watch(gone)) is not None)
+
+    def _drop_gone(self) -> None:
+        # Whoever holds the lock does this when it has let go of it.
+        while self._gone and self._lock.acquire(blocking=False):
+            try:
+                if self._gone:
+                    self._drop(self._gone.popleft())
+            finally:
+                self._lock.release()
+
+    def _drop(self, key: Hashable) -> None:
+        self._values.pop(key, None)
+        self._watched.pop(key, None)
+
+
+def _parts(key: Hashable) -> Iterator[Same]:
+    """Yield what in a key stands for an object."""
+    if isinstance(key, Same):
+        yield key
+    elif isinstance(key, tuple):
+        for each in key:
+            yield from _parts(each)

@@ -36,6 +36,7 @@ class StepsDock(FramedDock):
     help = "The stages of the run, one by one: noise, iterations, levels."
     order = 30
     empty = "The stages of a run appear here."
+    heavy = True
     folds = False
 
     def build(self) -> None:
@@ -73,6 +74,7 @@ class StepsDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Stand where the other tabs look: at a stage, or at the end when they look at the result again."""
+        super().show_scene(scene)
         given_back = self._stage is not None and scene.stage is None
         self._stage = scene.stage
         if given_back and self._frames and not self.playing:
@@ -113,9 +115,13 @@ class StepsDock(FramedDock):
     def present_nothing(self, reason: str) -> None:
         """Stop playing and say why there is nothing."""
         self.pause()
-        self._frames = ()
         self.label.setText("")
         super().present_nothing(reason)
+
+    def clear_shown(self) -> None:
+        """Let go of the stages."""
+        super().clear_shown()
+        self._frames, self._stage = (), None
 
     @property
     def playing(self) -> bool:

@@ -130,6 +130,12 @@ class ImagePane(Pane):
         self._choose_filter()
         self.painted.emit()
 
+    def show_nothing(self) -> None:
+        """Let go of the picture, and of what lies over it."""
+        self.set_overlay(None)
+        self.set_marks(())
+        self.set_picture(None)
+
     def set_look(self, table: NDArray[np.uint8] | None) -> None:
         """Paint every gray level as another one, (256,) uint8; None paints them as they are."""
         if table is not None or self._look is not None:

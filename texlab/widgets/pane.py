@@ -89,6 +89,10 @@ class Pane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
     def click_at(self, place: QPointF) -> None:
         """Take a click."""
 
+    def show_nothing(self) -> None:
+        """Let go of every picture."""
+        raise NotImplementedError
+
     # What is shown.
 
     def set_theme(self, theme: Theme) -> None:

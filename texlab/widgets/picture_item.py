@@ -60,6 +60,8 @@ class PictureItem(pg.ImageItem):  # type: ignore[misc]  # pyqtgraph has no types
         self.resetTransform()
         if picture is None:
             self.clear()
+            # What was rendered is as large as what is shown.
+            self.qimage = None
         elif picture.shape[0] * picture.shape[1] <= SMALL:
             self._prepare(picture)
         else:

@@ -133,6 +133,11 @@ class PlanePane(Pane):
             if self._link is not None:
                 self._link.resized()
 
+    def show_nothing(self) -> None:
+        """Let go of the picture and of the marks."""
+        self.show_picture(None, QRectF())
+        self.show_marks(())
+
     def show_marks(self, marks: Sequence[Drawn]) -> None:
         """Draw these marks over the picture."""
         self.marks.show_marks(marks)

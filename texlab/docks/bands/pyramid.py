@@ -279,14 +279,16 @@ class PyramidDock(FramedDock):
         value = number(float(band.plane[row, column]))
         self.readout.setText(f"{view.name}, {band.title}, {column}, {row}: {value}")
 
-    def drop_kept(self) -> None:
-        """Empty mosaics and caches."""
-        super().drop_kept()
-        self._pictures.clear()
+    def clear_shown(self) -> None:
+        """Empty the mosaics."""
+        super().clear_shown()
         for view in (self.exemplar, self.result):
             view.forget()
-        for pane in (self.original, self.reconstruction):
-            pane.set_picture(None)
+
+    def drop_kept(self) -> None:
+        """Empty the caches."""
+        super().drop_kept()
+        self._pictures.clear()
 
     # What the user does.
 

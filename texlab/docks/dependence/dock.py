@@ -52,6 +52,8 @@ class DependenceDock(FramedDock):
     rest_ms = 20
     empty = "Histograms appear as soon as there is an exemplar."
 
+    heavy = True
+
     def build(self) -> None:
         """Make the controls and the panels."""
         self._brush: Rectangle | None = None
@@ -149,6 +151,7 @@ class DependenceDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Mark the cells of the pixel that is asked about."""
+        super().show_scene(scene)
         self._probe = scene.probe
         self._mark_probe()
 
@@ -200,6 +203,11 @@ class DependenceDock(FramedDock):
             said = f"The chosen cells hold: {parts}. {said}"
         self.pair_name.setText(said)
         set_tip(self.pair_name, said)
+
+    def clear_shown(self) -> None:
+        """Let go of the panels."""
+        super().clear_shown()
+        self._redraw()
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing; nothing lights up then."""

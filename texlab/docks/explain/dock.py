@@ -43,6 +43,8 @@ class ExplainDock(FramedDock):
     rest_ms = 0
     empty = INVITATION
 
+    heavy = True
+
     def build(self) -> None:
         """Make the controls; the views come when they are needed."""
         self._views: dict[int, ExplanationView] = {}
@@ -79,6 +81,7 @@ class ExplainDock(FramedDock):
             # While the column runs, the explanation of its last result stays.
             if self._shown is not None and self._shown[0] == column.id and column.status in ("waiting", "running"):
                 return self._shown[1]
+            self._shown = None
             self.why = f"{column.title} has no finished result to explain."
             return None
         explainer = explainer_for(result.details)
@@ -114,6 +117,11 @@ class ExplainDock(FramedDock):
         self._pages.setCurrentWidget(view)
         self.setFocusProxy(view)
         view.show_explanation(explained)
+
+    def forget(self) -> None:
+        """Let go of what is explained."""
+        super().forget()
+        self._shown = None
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, and take the marks away."""

@@ -56,7 +56,6 @@ class FillDock(FillTools):
         self._works: dict[str, Work] = {}
         self._work: Work | None = None
         self._other: ImageInput | None = None
-        self._scene: Scene | None = None
         self._filling: FillScene = NO_FILL
         self._where_shown = ""
         self._update()
@@ -65,7 +64,7 @@ class FillDock(FillTools):
 
     def show_scene(self, scene: Scene) -> None:
         """Follow the fill that is under way."""
-        self._scene = scene
+        super().show_scene(scene)
         before, self._filling = self._filling, scene.fill
         filling = self._filling
         if filling is before:
@@ -153,7 +152,7 @@ class FillDock(FillTools):
             self._leave_work()
             if where == "photo":
                 sha = self._exemplar.sha256
-                source = self._scene.source if self._scene is not None else None
+                source = self.scene.source
                 sha = sha if source is None else source.sha256
                 work = self._works.pop(sha, None) or Work(self._exemplar)
                 # The newest last; a few are kept, so that a look at another picture loses nothing.
@@ -237,14 +236,14 @@ class FillDock(FillTools):
 
     def _params(self) -> Params:
         """Return the parameters of a column of the method, with the reach that is set here."""
-        columns = self._scene.columns if self._scene is not None else ()
+        columns = self.scene.columns
         found = next((each.params for each in columns if each.method == METHOD), None)
         params = find_method(METHOD).params() if found is None else found
         return params.replace(reach=self.reach.value())
 
     def _fill(self) -> None:
         if self.by_itself:
-            self._run((0, 0, 0, 0), self._scene.seed if self._scene is not None else 0)
+            self._run((0, 0, 0, 0), self.scene.seed)
         elif self._image is not None:
             height, width = self._image.shape[:2]
             self._submit((height, width))
@@ -264,11 +263,11 @@ class FillDock(FillTools):
         self._submit(None)
 
     def _grow_by(self, margins: tuple[int, int, int, int]) -> None:
-        self._run(margins, self._scene.seed if self._scene is not None else 0)
+        self._run(margins, self.scene.seed)
 
     def _run(self, margins: tuple[int, int, int, int], seed: int) -> None:
-        work, scene = self._work, self._scene
-        if work is None or scene is None or self._filling.status == "running":
+        work, scene = self._work, self.scene
+        if work is None or self._filling.status == "running":
             return
         exemplar: Callable[[], ImageInput | None] | None = None
         if self.source.currentData() == "other":

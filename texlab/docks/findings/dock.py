@@ -61,11 +61,11 @@ class FindingsDock(FramedDock):
         "the numbers before and after are shown."
     )
     order = 12
+    heavy = True
     empty = "Findings appear when a result has been measured."
 
     def build(self) -> None:
         """Make list, explanation and picture."""
-        self._column: ColumnScene | None = None
         self._tried: Tried | None = None
         self.apply = self.add_button("try", "Try this", "Apply what is to be tried to the column", self._try)
         self.outcome = Label(name="findings-outcome", muted=True, wraps=True)
@@ -101,10 +101,11 @@ class FindingsDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Show numbers before and after as far as they are there."""
-        self._column = scene.selected
+        super().show_scene(scene)
         said = [before_and_after(self._tried, scene.columns)]
-        if self._column is not None and self._column.findings:
-            said.append(self._column.unexamined)
+        column = scene.selected
+        if column is not None and column.findings:
+            said.append(column.unexamined)
         self.outcome.setText("\n".join(filter(None, said)))
         self.outcome.setVisible(bool(self.outcome.text()))
 
@@ -179,7 +180,7 @@ class FindingsDock(FramedDock):
         self.apply.setEnabled(attempt(answer.column, found) is not None)
 
     def _try(self) -> None:
-        found, column = self.chosen, self._column
+        found, column = self.chosen, self.scene.selected
         answer: Found | None = self.answer
         if found is None or column is None or answer is None or column.id != answer.column.id:
             return

@@ -65,8 +65,6 @@ class InputsDock(FramedDock):
 
     def build(self) -> None:
         """Make the controls and the pictures."""
-        self._column: ColumnScene | None = None
-        self._scene: Scene | None = None
         self._filling = True
         self.which = self.add_choice("which", "Input", "Which of the method's images is chosen here", [], self.ask)
         self.gallery = self.add_button("gallery", "Gallery", "Choose a texture of the gallery", lambda: None)
@@ -103,22 +101,27 @@ class InputsDock(FramedDock):
     @property
     def spec(self) -> InputSpec | None:
         """The input that is chosen."""
-        if self._column is None:
+        if self.scene.selected is None:
             return None
         return next(
-            (each for each in image_specs(self._column.method) if each.name == self.which.currentData()), None
+            (each for each in image_specs(self.scene.selected.method) if each.name == self.which.currentData()),
+            None,
         )
 
     @property
     def given(self) -> ImageInput | None:
         """The image that stands there now."""
         spec = self.spec
-        found = dict(self._column.inputs).get(spec.name) if self._column is not None and spec is not None else None
+        found = (
+            dict(self.scene.selected.inputs).get(spec.name)
+            if self.scene.selected is not None and spec is not None
+            else None
+        )
         return found if isinstance(found, ImageInput) else None
 
     def show_scene(self, scene: Scene) -> None:
         """Show what the chosen column's method takes, and what it has."""
-        self._scene, self._column = scene, scene.selected
+        super().show_scene(scene)
         specs = image_specs(scene.selected.method) if scene.selected is not None else ()
         replace_items(self.which, [(_text(spec), spec.name) for spec in specs])
         self._show_controls(self.given)
@@ -166,7 +169,7 @@ class InputsDock(FramedDock):
 
     def take(self, source: Any, *, name: str | None = None) -> None:
         """Read an image in the background and give it to the column."""
-        column, spec = self._column, self.spec
+        column, spec = self.scene.selected, self.spec
         if column is None or spec is None:
             return
 
@@ -186,7 +189,7 @@ class InputsDock(FramedDock):
         self._give(read, column.id, spec.name, f"{spec.name} chosen")
 
     def _change(self, scale: float, crop: Crop | None, text: str) -> None:
-        column, spec, given = self._column, self.spec, self.given
+        column, spec, given = self.scene.selected, self.spec, self.given
         if column is None or spec is None or given is None:
             return
 
@@ -211,7 +214,7 @@ class InputsDock(FramedDock):
         self.intention.emit(AskOnce(f"input {name}", read, done))
 
     def _scene_column(self, column_id: int) -> ColumnScene | None:
-        columns = self._scene.columns if self._scene is not None else ()
+        columns = self.scene.columns
         return next((column for column in columns if column.id == column_id), None)
 
     def _rescale(self) -> None:
@@ -238,7 +241,7 @@ class InputsDock(FramedDock):
             self._change(given.origin.scale if given.origin is not None else 1.0, crop, "part of an input")
 
     def _remove(self) -> None:
-        column, spec = self._column, self.spec
+        column, spec = self.scene.selected, self.spec
         if column is not None and spec is not None:
             rest = tuple(each for each in column.inputs if each[0] != spec.name)
             self.intention.emit(EditInputs(column.id, rest, f"{spec.name} removed"))
@@ -274,9 +277,9 @@ class InputsDock(FramedDock):
 
     def _fill_results(self, menu: QMenu) -> None:
         menu.clear()
-        columns = self._scene.columns if self._scene is not None else ()
+        columns = self.scene.columns
         for place, (column, title) in enumerate(zip(columns, titles(columns), strict=True), 1):
-            if column.result is not None and (self._column is None or column.id != self._column.id):
+            if column.result is not None and (self.scene.selected is None or column.id != self.scene.selected.id):
                 text = f"{place}. {title}"
                 menu.addAction(text).triggered.connect(partial(self._take_result, column.id))
         if menu.isEmpty():

@@ -112,8 +112,15 @@ class LabDock(Dock):
         """The sentence that is shown instead of the chosen experiment, or None."""
         return self.page.message
 
+    def note_scene(self, scene: Scene) -> None:
+        """Let every experiment take note of it, also those that lie behind."""
+        super().note_scene(scene)
+        for page in self._pages.values():
+            page.note_scene(scene)
+
     def show_scene(self, scene: Scene) -> None:
         """Show what needs no computing."""
+        super().show_scene(scene)
         self.page.show_scene(scene)
 
     def question(self, scene: Scene) -> Question | None:

@@ -120,6 +120,7 @@ class EqualizePage(LabPage):
 
     def show_scene(self, scene: Scene) -> None:
         """List what there is to choose from."""
+        super().show_scene(scene)
         items: list[tuple[str, Any]] = []
         if scene.exemplar is not None:
             items.append(("exemplar", "exemplar"))

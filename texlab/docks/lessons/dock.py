@@ -179,6 +179,7 @@ class LessonsDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Show what belongs to the step that is given."""
+        super().show_scene(scene)
         lesson = scene.lesson
         given = lesson.lesson is not None
         self.leave_button.setEnabled(given)

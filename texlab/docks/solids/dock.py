@@ -74,6 +74,8 @@ class SolidsDock(FramedDock):
     rest_ms = 0
     empty = "Slices and objects appear when a column makes a solid: add the method Solid texture."
 
+    heavy = True
+
     def build(self) -> None:
         """Make the controls and the panes."""
         shapes = [(shape.capitalize(), shape) for shape in SHAPES]
@@ -129,7 +131,6 @@ class SolidsDock(FramedDock):
         self._column_id = 0
         self._result: Result | None = None
         self._filling = False
-        self._scene: Scene | None = None
         self.beside.setChecked(True)
         self.body.installEventFilter(self)
 
@@ -170,10 +171,12 @@ class SolidsDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Show the size of the chosen column."""
+        super().show_scene(scene)
         column = scene.selected
         solid = column is not None and find_method(column.method).dimensions == 3
         self.controls.setVisible(solid)
         if column is None or not solid:
+            self._result = None
             return
         if column.id != self._column_id:
             self._column_id, self._result, self.place = column.id, None, None
@@ -183,13 +186,12 @@ class SolidsDock(FramedDock):
                 if not self.sides[axis].hasFocus():
                     self.sides[axis].setValue(side)
             self._filling = False
-        self._scene = scene
         self._foretell()
 
     def _foretell(self) -> None:
         """Say what a solid of the sides in the boxes, as they are typed, will take."""
-        scene, column = self._scene, None if self._scene is None else self._scene.selected
-        if scene is None or scene.exemplar is None or column is None:
+        scene, column = self.scene, self.scene.selected
+        if scene.exemplar is None or column is None:
             self.needs.setText("")
             return
         method = find_method(column.method)
@@ -247,6 +249,17 @@ class SolidsDock(FramedDock):
 
         key = (self.name, Same(volume), place, view, side, live, background, beside, Same(exemplar))
         return Question(key, compute)
+
+    def forget(self) -> None:
+        """Let go of the last solid."""
+        super().forget()
+        self._result = None
+
+    def clear_shown(self) -> None:
+        """Empty the panes of slices and objects, too."""
+        super().clear_shown()
+        for area in self.areas:
+            area.set_picture(None)
 
     def _solid_of(self, column: ColumnScene) -> Result | None:
         """Return the newest solid of this column."""

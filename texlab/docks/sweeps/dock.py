@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from PySide6.QtGui import QKeyEvent
 
-    from texlab.state.scene import ColumnScene, Scene
+    from texlab.state.scene import Scene
     from texlab.state.sweeps import ShownCell
     from texlab_core.sheets.sweep import Sweep
     from texlab_core.sheets.sweep_recipes import SweepRecipe
@@ -59,7 +59,6 @@ class SweepsDock(FramedDock):
     def build(self) -> None:
         """Make the controls, the axes and the sheet."""
         self._fits = True
-        self._column: ColumnScene | None = None
         # What is painted at present.
         self.shown = NO_SWEEP
         self.cells: dict[int, ShownCell] = {}
@@ -166,7 +165,8 @@ class SweepsDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Offer the chosen column's knobs and show how far the sweep is."""
-        self._column = column = scene.selected
+        super().show_scene(scene)
+        column = scene.selected
         self.panel.across.show_opened(scene.opened)
         if column is not None:
             self.panel.show_method(find_method(column.method))
@@ -226,7 +226,7 @@ class SweepsDock(FramedDock):
         self.status.setText(status_text(shown))
 
     def _show_state(self) -> None:
-        self.start_button.setEnabled(self._column is not None)
+        self.start_button.setEnabled(self.scene.selected is not None)
         self.stop_button.setEnabled(self.running)
         self.progress.setVisible(self.running)
         self.save_button.setEnabled(bool(self.cells))
@@ -238,7 +238,7 @@ class SweepsDock(FramedDock):
 
     def start(self) -> None:
         """Run the sweep instead of one that runs."""
-        if self._column is None:
+        if self.scene.selected is None:
             return
         try:
             plan = self.panel.plan()
@@ -246,7 +246,7 @@ class SweepsDock(FramedDock):
             self.panel.tell(str(error))
             return
         self.panel.tell("")
-        self.intention.emit(RunSweep(self._column.id, plan))
+        self.intention.emit(RunSweep(self.scene.selected.id, plan))
 
     def stop(self) -> None:
         """Stop; the finished cells stay."""
@@ -320,7 +320,7 @@ class SweepsDock(FramedDock):
         self.intention.emit(CellAsColumn(self.cells[index].cell, self.shown.column_id))
 
     def _take(self, index: int) -> None:
-        chosen = 0 if self._column is None else self._column.id
+        chosen = 0 if self.scene.selected is None else self.scene.selected.id
         self.intention.emit(TakeCell(self.cells[index].cell, (chosen, self.shown.column_id)))
 
     def _mark(self, scene: Scene) -> None:

@@ -69,10 +69,9 @@ class ThresholdsDock(FramedDock):
         """Make the controls, the table and what stands beside it."""
         self._known = KnownAxes()
         self._locks: dict[int, frozenset[Cell]] = {}
-        self._column: ColumnScene | None = None
+        self._column_id = 0
         self._exemplar: ImageInput | None = None
         self._field = ""
-        self._sampling: Sampling | None = None
         self._found: Binding | None = None
         self.editor = TableEditor("thresholds-table")
         self._measured: binds.Answered | None = None
@@ -167,7 +166,7 @@ class ThresholdsDock(FramedDock):
     def question(self, scene: Scene) -> Question | None:
         """Show the table of the chosen column at once; ask for the distances of the chosen cell."""
         column = scene.selected
-        if self._column is not None and (column is None or column.id != self._column.id):
+        if self._column_id and (column is None or column.id != self._column_id):
             self._settle()
         field = table_field(column.params) if column is not None else None
         if column is None or field is None:
@@ -194,11 +193,12 @@ class ThresholdsDock(FramedDock):
 
         return Question((self.name, Same(model), k, feature, Same(sampling)), compute)
 
-    def show_scene(self, scene: Scene) -> None:
-        """Take note of the newest result: what is computed for an older one stops."""
-        column = scene.selected
+    @property
+    def _sampling(self) -> Sampling | None:
+        """Of the newest result: what is computed for an older one stops."""
+        column = self.scene.selected
         details = column.result.details if column is not None and column.result is not None else None
-        self._sampling = details.sampling if isinstance(details, DeBonetDetails) else None
+        return details.sampling if isinstance(details, DeBonetDetails) else None
 
     def _ask_axes(self, column: ColumnScene, exemplar: ImageInput) -> Question:
         """Ask for the analysis of a column that was stopped before it had a result."""
@@ -229,10 +229,10 @@ class ThresholdsDock(FramedDock):
         self._show_cell()
 
     def _show_table(self, column: ColumnScene, field: str) -> None:
-        if self._column is None or column.id != self._column.id:
+        if column.id != self._column_id:
             self.editor.set_locked(self._locks.get(column.id, frozenset()))
             self._found = None
-        self._column, self._field = column, field
+        self._column_id, self._field = column.id, field
         view = self._view(column, getattr(column.params, field))
         self.arrangement.setVisible(view is not None and len(view.axes.channels) > 1)
         self.editor.show_view(view)
@@ -291,8 +291,9 @@ class ThresholdsDock(FramedDock):
         self.ask()
 
     def _rearrange(self) -> None:
-        if self._column is not None and self.editor.view is not None:
-            self.editor.show_view(self._view(self._column, self.editor.view.table))
+        column = next((each for each in self.scene.columns if each.id == self._column_id), None)
+        if column is not None and self.editor.view is not None:
+            self.editor.show_view(self._view(column, self.editor.view.table))
         self.ask()
 
     def settings(self) -> dict[str, bool | int | float | str]:
@@ -313,12 +314,12 @@ class ThresholdsDock(FramedDock):
         self.law.settle()
 
     def _edit(self, table: ThresholdTable, final: bool) -> None:
-        if self._column is not None:
-            self.intention.emit(EditField(self._column.id, self._field, table, final))
+        if self._column_id:
+            self.intention.emit(EditField(self._column_id, self._field, table, final))
 
     def _edit_law(self, name: str, value: float, final: bool) -> None:
-        if self._column is not None:
-            self.intention.emit(EditField(self._column.id, name, value, final))
+        if self._column_id:
+            self.intention.emit(EditField(self._column_id, name, value, final))
 
     def copy_rows(self) -> None:
         """Put the rows of the selected cells on the clipboard."""
@@ -351,8 +352,8 @@ class ThresholdsDock(FramedDock):
             self.editor.set_value(value)
 
     def _remember_locks(self) -> None:
-        if self._column is not None:
-            self._locks[self._column.id] = self.editor.locked
+        if self._column_id:
+            self._locks[self._column_id] = self.editor.locked
 
 
 def measures_text(column: ColumnScene) -> str:

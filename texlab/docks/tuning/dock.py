@@ -60,7 +60,6 @@ class TuningDock(FramedDock):
 
     def build(self) -> None:
         """Make the controls, the plot, and the place of the picture."""
-        self._scene = Scene()
         self._drawn: tuple[Any, ...] = ()
         self._redraw = Once(self, REDRAW_MS, self._show_all)
         self.points: list[Placed] = []
@@ -123,7 +122,8 @@ class TuningDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Plot what there is, and show how far the search is."""
-        before, self._scene = self._scene, scene
+        before = self.scene
+        super().show_scene(scene)
         if scene.exemplar is None:
             return
         self.show_body()
@@ -136,7 +136,7 @@ class TuningDock(FramedDock):
             self._show_all()
 
     def _show_all(self) -> None:
-        scene = self._scene
+        scene = self.scene
         self._redraw.stop()
         column = scene.selected
         replace_items(self.knobs, [] if column is None else knob_choices(column.method))
@@ -164,17 +164,17 @@ class TuningDock(FramedDock):
 
     def show_answer(self, answer: tuple[str, dict[str, float]]) -> None:
         """Draw the exemplar's own line."""
-        self.show_scene(self._scene)
+        self.show_scene(self.scene)
 
     @property
     def _own(self) -> dict[str, float]:
         """The numbers of another piece of the exemplar's source, as far as they are known."""
-        exemplar = self._scene.exemplar
+        exemplar = self.scene.exemplar
         known = self.answer is not None and exemplar is not None and self.answer[0] == exemplar.sha256
         return self.answer[1] if known else {}
 
     def _draw(self) -> None:
-        scene = self._scene
+        scene = self.scene
         x, y = self.across.currentData(), self.up.currentData()
         what = (scene.points, scene.sweep.cells, scene.tuning.cells, scene.exemplar, x, y, tuple(self._own))
         if len(what) == len(self._drawn) and all(a is b or a == b for a, b in zip(what, self._drawn, strict=True)):
@@ -221,8 +221,8 @@ class TuningDock(FramedDock):
                 self.plot.text(across[0], up[0], words, role)
 
     def _show_state(self) -> None:
-        shown = self._scene.tuning
-        self.suggest_button.setEnabled(self._scene.selected is not None and self.knobs.count() > 0)
+        shown = self.scene.tuning
+        self.suggest_button.setEnabled(self.scene.selected is not None and self.knobs.count() > 0)
         thresholds = self.knobs.currentData() in ((), None)
         self.suggest_button.setText("Suggest thresholds" if thresholds else "Suggest values")
         self.stop_button.setEnabled(shown.running)
@@ -241,7 +241,7 @@ class TuningDock(FramedDock):
 
     def suggest(self) -> None:
         """Search instead of a search that runs."""
-        column = self._scene.selected
+        column = self.scene.selected
         if column is not None:
             plan = TuningPlan(self.limit.currentData(), self.knobs.currentData() or (), BUDGET)
             self.intention.emit(RunTuning(column.id, plan))
@@ -252,7 +252,7 @@ class TuningDock(FramedDock):
 
     def take(self) -> None:
         """Take what the search found."""
-        shown = self._scene.tuning
+        shown = self.scene.tuning
         if shown.found is not None:
             job = dataclasses.replace(shown.found.base, params=shown.found.found)
             self.intention.emit(TakeCell(Cell(index=0, job=job, values={}), (shown.column_id,)))
@@ -274,7 +274,7 @@ class TuningDock(FramedDock):
 
     def _clicked(self) -> None:
         if self.over is not None:
-            chosen = self._scene.selected_id
+            chosen = self.scene.selected_id
             self.intention.emit(TakeCell(self.over.shown.cell, (chosen, self.over.shown.cell.index)))
 
 

@@ -1,0 +1,149 @@
+"""A tab holds nothing of a result that has gone, whether it is seen or lies behind another one."""
+
+from __future__ import annotations
+
+import gc
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from dock_scenes import image_input
+
+from texlab.docks import dock_classes
+from texlab.docks.host import DockHost
+from texlab.docks.lab.dock import LabDock
+from texlab.runs.slots import Slots
+from texlab.state.scene import ColumnScene, Frame, Probe, Scene
+from texlab.style.pictures import to_picture
+from texlab_core.engine.job import Job
+from texlab_core.engine.registry import methods
+from texlab_core.engine.run import run
+from texlab_core.findings.finding import FINDING, Finding, Region, Remedy, Where
+
+if TYPE_CHECKING:
+    from texlab.docks.base import Dock
+
+# Sides that nothing else has, nor have their halves.
+BIG = (41, 37)
+SIGNS = (set(BIG), {-(-each // 2) for each in BIG})
+SMALL = (20, 16)
+METHODS = {
+    "heeger-bergen": {"scales": 2, "iterations": 1},
+    "de-bonet": {},
+    "efros-leung": {"window": 5},
+    "solid": {"scales": 2, "iterations": 1},
+}
+# What is kept for the scrubber and by iteration, and what is copied from places.
+USUAL = ("heeger-bergen", "de-bonet")
+OTHERS = {"explain": ("efros-leung",), "solids": ("solid",)}
+CUTS = Finding(
+    id="cuts", title="Cuts", what="It jumps by 9.", where=Where("result", "everywhere", (Region(1, 1, 3, 3),)),
+    why="Pieces do not fit.", remedy=Remedy("Nothing.", {}), certainty=FINDING, measures=("cuts",),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def exemplar() -> Any:
+    return image_input(np.random.default_rng(2).random((24, 24, 3), np.float32), "noise")
+
+
+def finished(exemplar: Any, method: str, size: tuple[int, int], column_id: int = 1) -> ColumnScene:
+    """Return a column with everything that a run leaves."""
+    kind = methods()[method]
+    sides = (*(8,) * (kind.dimensions - 2), *size)
+    params = kind.params.from_json(METHODS[method])
+    frames: list[Frame] = []
+
+    def watch(step: Any) -> None:
+        if step.frame is not None and step.preview is not None:
+            frames.append(Frame(step.frame, to_picture(step.preview())))
+
+    result = run(Job(method=method, inputs={"exemplar": exemplar}, params=params, size=sides, seed=4), watch)
+    return ColumnScene(
+        column_id, method, kind.title, params, status="finished", picture=to_picture(result.image),
+        image=result.image, result=result, frames=tuple(frames), measures=dict(result.measures),
+        findings=(CUTS,), size=sides,
+    )  # fmt: skip
+
+
+def of_old() -> list[str]:
+    """Return where arrays of the large result are held."""
+    gc.collect()
+    found: dict[int, Any] = {}
+    for each in gc.get_objects():
+        for held in gc.get_referents(each):
+            if isinstance(held, np.ndarray) and any(sign <= set(held.shape) for sign in SIGNS):
+                found[id(held)] = (held.shape, held.dtype, describe(each))
+    return [str(each) for each in found.values()]
+
+
+def describe(holder: Any) -> str:
+    if isinstance(holder, dict):
+        return ", ".join(str(key) for key in list(holder)[:12])
+    return type(holder).__qualname__
+
+
+class Watched:
+    """A tab with its host."""
+
+    def __init__(self, qtbot: Any, kind: type[Dock]) -> None:
+        self._qtbot = qtbot
+        self.dock = kind()
+        qtbot.addWidget(self.dock)
+        self.dock.resize(900, 300)
+        self.host = DockHost(self.dock, Slots(1))
+
+    def see(self, scene: Scene) -> None:
+        self.dock.show()
+        self._qtbot.waitExposed(self.dock)
+        self._show(scene)
+
+    def pages(self, scene: Scene) -> None:
+        """Look at a scene, at every page of it."""
+        self.see(scene)
+        if isinstance(self.dock, LabDock):
+            for page in (*range(self.dock.bar.count()), 0):
+                self.dock.bar.setCurrentIndex(page)
+                self._show(scene)
+
+    def hide(self) -> None:
+        self.dock.hide()
+        self._qtbot.waitUntil(lambda: not self.host._look.isActive())
+
+    def tell(self, scene: Scene) -> None:
+        self.host.show_scene(scene)
+
+    def _show(self, scene: Scene) -> None:
+        self.host.show_scene(scene)
+        self._qtbot.waitUntil(lambda: not self.host.busy)
+        # What was announced last may ask for more on the next turn.
+        self._qtbot.wait(0)
+        self._qtbot.waitUntil(lambda: not self.host.busy)
+
+
+@pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
+def test_what_has_gone_is_held_by_no_tab(qtbot: Any, exemplar: Any, kind: type[Dock]) -> None:
+    watched = Watched(qtbot, kind)
+    try:
+        for method in (*USUAL, *OTHERS.get(kind.name, ())):
+            small = finished(exemplar, method, SMALL)
+            after = Scene(exemplar, (small,), 1, Probe(1, 3, 3, True))
+            watched.pages(large_and(small, exemplar, method, 1))
+            watched.pages(after)
+            assert not of_old(), f"{method}, in sight"
+            watched.pages(large_and(small, exemplar, method, 1))
+            watched.hide()
+            watched.tell(after)
+            assert not of_old(), f"{method}, out of sight"
+            watched.pages(large_and(small, exemplar, method, 2))
+            watched.hide()
+            watched.tell(after)
+            assert not of_old(), f"{method}, beside the chosen column, out of sight"
+    finally:
+        watched.host.close()
+
+
+def large_and(small: ColumnScene, exemplar: Any, method: str, place: int) -> Scene:
+    """Return a scene with a large result as the chosen column, or beside it, that nobody else refers to."""
+    large = finished(exemplar, method, BIG, place)
+    return Scene(exemplar, (large,) if place == 1 else (small, large), 1, Probe(place, 3, 3, True))
