@@ -91,8 +91,8 @@ def window(
     os.environ["TEXLAB_HOME"] = str(tmp_path)
     settings, themes = Settings(), ThemeSource("dark")
     shell = app.build(settings, themes)
-    shell.show()
-    qtbot.waitExposed(shell)
+    with qtbot.waitExposed(shell):
+        shell.show()
     explorer = app.complete(shell, settings, themes)
     explorer.saved = {"seed": 1, "size": [size, size]}
     explorer.start(source, columns=[(name, methods()[name].params.from_json(more)) for name, more in columns])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from stub_method import stub  # noqa: F401
 
+from tests.stub_method import stub  # noqa: F401
 from texlab.cli.commands._options import own_presets
 from texlab.cli.main import main
 

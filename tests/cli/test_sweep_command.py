@@ -7,8 +7,8 @@ import re
 
 import pytest
 from PIL import Image
-from stub_method import running, stub  # noqa: F401
 
+from tests.stub_method import running, stub  # noqa: F401
 from texlab.cli.commands._options import own_presets
 from texlab.cli.main import main
 from texlab_core.documents.presets import Preset

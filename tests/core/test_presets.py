@@ -11,8 +11,8 @@ from pathlib import PureWindowsPath
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from stub_method import STUB, StubParams, know, stub  # noqa: F401
 
+from tests.stub_method import STUB, StubParams, know, stub  # noqa: F401
 from texlab_core.documents.preset_store import PresetStore, bundled_presets, export_preset, file_name, find_preset
 from texlab_core.documents.presets import (
     Preset,

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F401
 
+from tests.stub_method import StubParams, analyses, exemplar, running, stub  # noqa: F401
 from texlab_core.batch.places import InProcess
 from texlab_core.batch.running import run_jobs
 from texlab_core.engine.cache import AnalysisCache

@@ -7,8 +7,8 @@ import json
 
 import numpy as np
 import pytest
-from stub_method import StubParams, exemplar, stub  # noqa: F401
 
+from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import Job
 from texlab_core.engine.params import describe

@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 import pytest
-from stub_method import StubParams, stub  # noqa: F401
 
+from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError, RecipeError

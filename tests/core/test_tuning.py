@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pytest
-from stub_method import know
 
+from tests.stub_method import know
 from texlab_core.batch.places import InProcess
 from texlab_core.batch.running import run_jobs
 from texlab_core.documents.preset_store import PresetStore, find_preset

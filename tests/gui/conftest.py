@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 import shiboken6
-from mouse import drag, handle_point, move  # noqa: F401
+from mouse import drag, handle_point, move, on_screen  # noqa: F401
 from PIL import Image
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from tests.stub_method import stub  # noqa: F401
@@ -53,6 +54,23 @@ def patience(monkeypatch: pytest.MonkeyPatch) -> None:
     """Give up late, whatever a test asks for: waits end with what they wait for, however busy the machine is."""
     for name in ("waitUntil", "waitSignal", "waitSignals", "waitExposed", "waitActive"):
         monkeypatch.setattr(QtBot, name, _patient(getattr(QtBot, name)))
+
+
+@pytest.fixture(autouse=True)
+def clicks_arrive(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Click only what is on the screen: what was just opened is waited for, whoever clicks in it."""
+    for name in ("mouseClick", "mouseDClick", "mousePress"):
+        monkeypatch.setattr(QtBot, name, staticmethod(_arriving(getattr(QtBot, name))))
+
+
+def _arriving(click: Callable[..., None]) -> Callable[..., None]:
+    def later(widget: Any, *given: Any, **options: Any) -> None:
+        handle = widget.window().windowHandle()
+        if widget.isVisible() and not handle.isExposed():
+            assert QTest.qWaitForWindowExposed(handle, PATIENCE_MS)
+        click(widget, *given, **options)
+
+    return later
 
 
 def _patient(wait: Callable[..., Any]) -> Callable[..., Any]:

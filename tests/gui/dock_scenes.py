@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+from mouse import on_screen
 from PySide6.QtCore import QPoint, Qt
 
 from texlab.state.scene import ColumnScene, Frame, Scene
@@ -96,7 +97,7 @@ def shown(qtbot: Any, dock: Dock, width: int = 900, height: int = 260) -> Any:
     dock.set_theme(LIGHT)
     dock.resize(width, height)
     dock.show()
-    qtbot.waitExposed(dock)
+    on_screen(qtbot, dock)
     return dock
 
 

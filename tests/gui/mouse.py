@@ -1,4 +1,4 @@
-"""The mouse on sliders and panes: places, moves with the button down, drags."""
+"""The mouse on sliders and panes: whether they are on the screen, places, moves with the button down, drags."""
 
 from __future__ import annotations
 
@@ -19,6 +19,21 @@ def handle_point(slider: Any, share: float | None = None) -> QPoint:
         QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, slider
     )
     return rectangle.center()
+
+
+def on_screen(qtbot: Any, widget: Any) -> Any:
+    """Wait until a widget that was shown is on the screen, and return it.
+
+    Under X that is later than it is shown: its window moves and its layouts are done until then.
+    """
+    qtbot.waitUntil(lambda: is_on_screen(widget))
+    return widget
+
+
+def is_on_screen(widget: Any) -> bool:
+    """Return whether the window of a widget is exposed, and some of the widget is to be seen in it."""
+    handle = widget.window().windowHandle()
+    return handle is not None and handle.isExposed() and not widget.visibleRegion().isEmpty()
 
 
 def drag(qtbot: Any, widget: Any, places: list[QPoint]) -> None:

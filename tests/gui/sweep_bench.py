@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from bench import DockBench
 from PySide6.QtCore import Qt
 
-from tests.stub_method import StubParams, exemplar
-from texlab.docks.host import DockHost
 from texlab.docks.sweeps.dock import SweepsDock
-from texlab.runs.controller import Controller
-from texlab.runs.slots import Slots
-from texlab.state.chosen import Column, Sample, State
-from texlab.state.session import Session
-from texlab.style.theme import LIGHT
-from texlab.window.carrier import Carrier
 from texlab_core.sheets.sweep import Vary
 from texlab_core.sheets.sweep_recipes import SweepRecipe
 
@@ -29,51 +22,6 @@ RECIPE = SweepRecipe(
 )
 
 
-class Bench:
-    """A session, a controller and the dock, wired as in the window."""
-
-    def __init__(self, qtbot, *columns):
-        self.session = Session()
-        self.controller = Controller(self.session)
-        self.dock = SweepsDock()
-        self.host = DockHost(self.dock, Slots(1))
-        self.carrier = Carrier(
-            self.controller,
-            self.session.select,
-            lambda source: None,
-            lambda marks: None,
-            lambda dock, how: None,
-            print,
-            lambda name, beside: None,
-            lambda name, settings: None,
-        )
-        self.dock.intention.connect(self.carrier.carry_out)
-        self.controller.scene_changed.connect(self.host.show_scene)
-        self.problems = []
-        self.controller.problem.connect(self.problems.append)
-        qtbot.addWidget(self.dock)
-        self.dock.set_theme(LIGHT)
-        self.dock.resize(900, 300)
-        self.dock.show()
-        qtbot.waitExposed(self.dock)
-        given = columns or (Column(1, "stub", StubParams()),)
-        self.session.apply(State(None, given, 5, (24, 32), len(given) + 1), "start")
-        self.session.select(given[0].id)
-        self.session.set_sample(Sample(exemplar()))
-        self.session.reset_history()
-        qtbot.waitUntil(lambda: not self.controller.busy, timeout=PATIENCE_MS)
-        qtbot.waitUntil(lambda: self.dock.start_button.isEnabled(), timeout=PATIENCE_MS)
-
-    @property
-    def params(self):
-        return self.session.selected_column.params
-
-    def close(self):
-        self.host.close()
-        self.controller.close()
-        self.controller.deleteLater()
-
-
 @pytest.fixture(name="bench")
 def make_bench(qtbot, monkeypatch):
     monkeypatch.setattr(
@@ -82,8 +30,11 @@ def make_bench(qtbot, monkeypatch):
     made = []
 
     def make(*columns):
-        made.append(Bench(qtbot, *columns))
-        return made[-1]
+        here = DockBench(qtbot, SweepsDock(), 900, 300, columns)
+        made.append(here)
+        here.begin()
+        qtbot.waitUntil(lambda: here.dock.start_button.isEnabled())
+        return here
 
     yield make
     for each in made:

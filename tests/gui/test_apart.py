@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
-from tests.gui.conftest import hb, ids, result_image, wait_idle
+from tests.gui.conftest import hb, ids, on_screen, result_image, wait_idle
 from texlab.columns.apart import MAX_GEOMETRY, ColumnWindow, places_from_json, places_to_json
 from texlab.style.pictures import to_picture
 
@@ -48,7 +48,7 @@ def test_a_column_lives_on_in_its_own_window_and_goes_back(qtbot: Any, explorer:
     wait_idle(qtbot, explorer)
     qtbot.keyClick(window, Qt.Key.Key_M, SHIFT)
     own = stage.apart.windows[second]
-    qtbot.waitExposed(own)
+    on_screen(qtbot, own)
     assert own.isWindow()
     assert view.window() is own
     assert view.isVisible()

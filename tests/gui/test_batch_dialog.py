@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from mouse import on_screen
 from PySide6.QtCore import Qt
 
 from texlab.window.batch_desk import plan_data
@@ -35,7 +36,7 @@ def dialog(qtbot: Any) -> BatchDialog:
     made = BatchDialog()
     qtbot.addWidget(made)
     made.show()
-    return made
+    return on_screen(qtbot, made)
 
 
 def test_it_runs_only_when_everything_is_said(dialog: BatchDialog, qtbot: Any) -> None:
@@ -111,7 +112,7 @@ def test_the_further_inputs_of_columns_come_along(explorer: Any, tmp_path: Path,
 
 def test_a_batch_runs_beside_the_window(explorer: Any, qtbot: Any, photos: Path, tmp_path: Path) -> None:
     explorer.window.actions_by_name["batch"].trigger()
-    dialog = explorer.handlers.batches.dialog
+    dialog = on_screen(qtbot, explorer.handlers.batches.dialog)
     dialog.inputs.setPlainText(str(photos))
     dialog.out.setText(str(tmp_path / "out"))
     dialog.sizes.setText("16x12")
@@ -120,7 +121,7 @@ def test_a_batch_runs_beside_the_window(explorer: Any, qtbot: Any, photos: Path,
     qtbot.waitUntil(lambda: dialog.page_button.isEnabled())
     assert dialog.message.text().startswith("2 textures in ")
     assert len(list((tmp_path / "out" / "pictures").iterdir())) == 2
-    assert not explorer.handlers.batches.busy
+    qtbot.waitUntil(lambda: not explorer.handlers.batches.busy)
     # What cannot be done is said in the dialog.
     dialog.inputs.setPlainText(str(photos / "missing.png"))
     qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
@@ -130,7 +131,7 @@ def test_a_batch_runs_beside_the_window(explorer: Any, qtbot: Any, photos: Path,
 
 def test_a_batch_is_stopped_and_goes_on(explorer: Any, qtbot: Any, photos: Path, tmp_path: Path) -> None:
     explorer.window.actions_by_name["batch"].trigger()
-    dialog = explorer.handlers.batches.dialog
+    dialog = on_screen(qtbot, explorer.handlers.batches.dialog)
     dialog.inputs.setPlainText(str(photos))
     dialog.out.setText(str(tmp_path / "out"))
     dialog.sizes.setText("16x12")

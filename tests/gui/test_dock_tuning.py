@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bench import DockBench
 from dock_scenes import check_controls, shown
 from PySide6.QtCore import QPointF, Qt
-from stub_method import StubParams, exemplar, stub  # noqa: F401
 
-from texlab.docks.host import DockHost
+from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab.docks.tuning.dock import TuningDock
 from texlab.docks.tuning.points import (
     D,
@@ -28,18 +28,13 @@ from texlab.docks.tuning.points import (
     settings,
     zone_lines,
 )
-from texlab.runs.controller import Controller
 from texlab.runs.kept_points import MOST, KeptPoints, small
-from texlab.runs.slots import Slots
-from texlab.state.chosen import Column, Sample, State
 from texlab.state.intentions import RunTuning, StopTuning, TakeCell
 from texlab.state.scene import ColumnScene, Scene
-from texlab.state.session import Session
 from texlab.state.sweeps import ShownCell, SweepScene
 from texlab.state.tuning import TuningPlan, TuningScene
 from texlab.style.pictures import to_picture
-from texlab.style.theme import DARK, LIGHT
-from texlab.window.carrier import Carrier
+from texlab.style.theme import DARK
 from texlab_core.engine.job import Job
 from texlab_core.engine.result import Result
 from texlab_core.errors import Cancelled, InputError, ParamError
@@ -150,49 +145,11 @@ def test_finished_runs_are_kept_once_and_the_oldest_go():
     assert kept.points[-1].cell.job.params.level == 0.5 + MOST / 1000
 
 
-class Bench:
-    """A session, a controller and the dock, wired as in the window."""
-
-    def __init__(self, qtbot):
-        self.session = Session()
-        self.controller = Controller(self.session)
-        self.dock = TuningDock()
-        self.host = DockHost(self.dock, Slots(1))
-        self.carrier = Carrier(
-            self.controller,
-            self.session.select,
-            lambda source: None,
-            lambda marks: None,
-            lambda dock, how: None,
-            lambda intention: None,
-            lambda name, beside: None,
-            lambda name, settings: None,
-        )
-        self.intended = []
-        self.dock.intention.connect(self.intended.append)
-        self.dock.intention.connect(self.carrier.carry_out)
-        self.controller.scene_changed.connect(self.host.show_scene)
-        qtbot.addWidget(self.dock)
-        self.dock.set_theme(LIGHT)
-        self.dock.resize(1000, 420)
-        self.dock.show()
-        qtbot.waitExposed(self.dock)
-        self.session.apply(State(None, (Column(1, "stub", StubParams()),), 5, (48, 64), 2), "start")
-        self.session.select(1)
-        self.session.set_sample(Sample(exemplar(48, 64)))
-        self.session.reset_history()
-        qtbot.waitUntil(lambda: not self.controller.busy, timeout=PATIENCE_MS)
-
-    def close(self):
-        self.host.close()
-        self.controller.close()
-        self.controller.deleteLater()
-
-
 @pytest.fixture
 def bench(qtbot, monkeypatch):
     monkeypatch.setattr("texlab.docks.tuning.dock.BUDGET", 26)
-    made = Bench(qtbot)
+    made = DockBench(qtbot, TuningDock(), 1000, 420)
+    made.begin(48, 64, exemplar(48, 64))
     yield made
     made.close()
 

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import pytest
 from dock_scenes import column_of, noise, scene_of
+from mouse import on_screen
 from PySide6.QtCore import Qt
 
 from tests.gui.conftest import wait_idle
@@ -84,7 +85,7 @@ def test_a_dock_that_comes_into_sight_shows_what_there_is(qtbot: Any, watch: Any
     for each in (scene_of(exemplar=None), waiting, scene):
         host.show_scene(each)
     dock.show()
-    qtbot.waitExposed(dock)
+    on_screen(qtbot, dock)
     qtbot.waitUntil(lambda: host._was_seen is True)
     asks = dock.question(scene) is not None
     # Somebody else computes: nothing is not what is said of something that is on its way.
@@ -101,15 +102,15 @@ def test_nobody_waits_for_what_nobody_sees(qtbot: Any, watch: Any) -> None:
     for host in (first, second):
         host.show_scene(everything())
     endless.show()
-    qtbot.waitExposed(endless)
+    on_screen(qtbot, endless)
     qtbot.waitUntil(endless.begun.is_set)
     other.show()
-    qtbot.waitExposed(other)
+    on_screen(qtbot, other)
     qtbot.waitUntil(lambda: other.message == WORKING)
     endless.hide()
     qtbot.waitUntil(lambda: other.message is None)
     assert endless.ended.is_set()
-    assert not first.busy
+    qtbot.waitUntil(lambda: not first.busy)
     # What was dropped is asked again.
     endless.begun.clear()
     endless.show()

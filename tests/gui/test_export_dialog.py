@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pypdf
 import pytest
+from mouse import on_screen
 from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
@@ -26,8 +27,7 @@ if TYPE_CHECKING:
 def opened(explorer: Any, qtbot: Any) -> Any:
     explorer.window.actions_by_name["export-many"].trigger()
     dialog = explorer.handlers.exports.dialog
-    # Under X a dialog is there before it is on the screen, and what is clicked until then moves.
-    qtbot.waitUntil(lambda: dialog.windowHandle().isExposed() and not dialog.run_button.visibleRegion().isEmpty())
+    on_screen(qtbot, dialog.run_button)
     return dialog
 
 

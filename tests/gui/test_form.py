@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import pytest
-from mouse import drag, handle_point, move
+from mouse import drag, handle_point, move, on_screen
 from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
@@ -92,7 +92,7 @@ def shown(qtbot, widget, width=280, height=640):
     qtbot.addWidget(widget)
     widget.resize(width, height)
     widget.show()
-    qtbot.waitExposed(widget)
+    on_screen(qtbot, widget)
     return widget
 
 

@@ -6,6 +6,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from mouse import on_screen
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QTextDocument
 
@@ -29,7 +30,7 @@ def text_of(page):
 
 def test_the_page_that_was_asked_for_is_shown_at_once_and_stays(window, qtbot):
     window.open_page("de-bonet")
-    qtbot.waitExposed(window)
+    on_screen(qtbot, window)
     window.list.setFocus()
     qtbot.wait(60)
     assert window.browser.page == "de-bonet"

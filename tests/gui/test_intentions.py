@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from types import SimpleNamespace
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import pytest
+from bench import Bench, begin
 
 from texlab.state import intentions
-from texlab.state.chosen import Column, State
+from texlab.state.chosen import Column
 from texlab.state.intentions import (
     AskOnce,
     CellAsColumn,
@@ -36,14 +37,15 @@ from texlab.state.intentions import (
     Tell,
 )
 from texlab.state.scene import Frame
-from texlab.state.session import Session
 from texlab.state.sweeps import SweepPlan
-from texlab.window.carrier import Carrier
 from texlab_core.engine.inputs import DataInput, ImageInput, hash_arrays
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
 from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 from texlab_core.sheets.sweep import Cell, Vary
+
+if TYPE_CHECKING:
+    from texlab.state.session import Session
 
 HB, EL = methods()["heeger-bergen"], methods()["efros-leung"]
 
@@ -84,33 +86,12 @@ class Part:
         return lambda *args: self.orders.append((f"{self.part}.{name}", *args))
 
 
-class Bench:
-    def __init__(self) -> None:
-        self.session = Session()
-        columns = (Column(1, "heeger-bergen", HB.params()), Column(2, "msg", methods()["msg"].params()))
-        self.session.apply(State(None, columns, 5, (24, 32), 3), "start")
-        self.session.select(1)
-        self.session.reset_history()
-        self.controller: Any = Recorder(self.session)
-        self.chosen: list[int] = []
-        self.opened: list[str] = []
-        self.taught: list[Any] = []
-        self.asked: list[Any] = []
-        self.marks: list[Any] = []
-        self.taken: list[tuple[str, str]] = []
-        self.carrier = Carrier(
-            self.controller,
-            self.chosen.append,
-            self.opened.append,
-            self.marks.append,
-            self.take,
-            self.taught.append,
-            lambda *given: self.asked.append(given),
-            lambda *given: self.asked.append(given),
-        )
+class OrderBench(Bench):
+    """A bench whose controller only notes its orders."""
 
-    def take(self, dock: str, how: str) -> None:
-        self.taken.append((dock, how))
+    def __init__(self) -> None:
+        super().__init__(Recorder)
+        begin(self.session, Column(1, "heeger-bergen", HB.params()), Column(2, "msg", methods()["msg"].params()))
 
     def do(self, intention: Intention) -> list[tuple[Any, ...]]:
         self.carrier.carry_out(intention)
@@ -118,8 +99,8 @@ class Bench:
 
 
 @pytest.fixture
-def bench(qapp: Any) -> Bench:
-    return Bench()
+def bench(qapp: Any) -> OrderBench:
+    return OrderBench()
 
 
 def mask() -> ImageInput:
@@ -142,7 +123,7 @@ def test_every_intention_is_a_frozen_value() -> None:
         assert each.__doc__.endswith(".") or "Parameters" in each.__doc__
 
 
-def test_edits_reach_the_controller_as_they_are(bench: Bench) -> None:
+def test_edits_reach_the_controller_as_they_are(bench: OrderBench) -> None:
     params = HB.params(iterations=3)
     bench.do(EditParams(1, params, "iterations", final=False))
     code = (("code", DataInput({}, "code", "0")),)
@@ -153,7 +134,7 @@ def test_edits_reach_the_controller_as_they_are(bench: Bench) -> None:
     ]
 
 
-def test_a_field_is_set_in_what_the_column_has_by_then(bench: Bench) -> None:
+def test_a_field_is_set_in_what_the_column_has_by_then(bench: OrderBench) -> None:
     bench.session.set_params(1, HB.params(scales=2), "scales")
     assert bench.do(EditField(1, "iterations", 7)) == [
         ("edit.params", 1, HB.params(scales=2, iterations=7), "iterations", True)
@@ -162,38 +143,39 @@ def test_a_field_is_set_in_what_the_column_has_by_then(bench: Bench) -> None:
     assert len(bench.do(EditField(99, "iterations", 7))) == 1
 
 
-def test_a_column_gets_another_method_with_its_defaults(bench: Bench) -> None:
+def test_a_column_gets_another_method_with_its_defaults(bench: OrderBench) -> None:
     bench.do(ChangeMethod(2, "efros-leung"))
     changed = bench.session.state.column(2)
     assert (changed.method, changed.params) == ("efros-leung", EL.params())  # type: ignore[union-attr]
-    assert bench.chosen == [2]
+    assert bench.asked["choose"] == [2]
     assert bench.session.undo_text == "method efros-leung"
 
 
-def test_pixels_and_marks(bench: Bench) -> None:
+def test_pixels_and_marks(bench: OrderBench) -> None:
     bench.do(Point(1, 3, 4))
     bench.do(Pin(1, 5, 6))
     assert bench.controller.orders == [("point.point_at", 1, 3, 4), ("point.pin", 1, 5, 6)]
     marks: Any = ("here",)
     bench.do(ShowMarks(marks))
-    assert bench.marks == [marks]
+    assert bench.asked["show_marks"] == [marks]
 
 
-def test_stages_and_pictures_of_tabs(bench: Bench) -> None:
+def test_stages_and_pictures_of_tabs(bench: OrderBench) -> None:
     frame = Frame("noise", np.zeros((4, 4, 3), np.uint8))
     bench.do(ShowStage(1, frame))
     bench.do(ShowStage(1, None))
     bench.do(TakePicture("pyramid", "drag"))
     assert bench.controller.orders == [("point.show_stage", 1, frame), ("point.show_stage", 1, None)]
-    assert bench.taken == [("pyramid", "drag")]
+    assert bench.asked["take_picture"] == [("pyramid", "drag")]
 
 
-def test_opening_telling_and_choosing(bench: Bench) -> None:
+def test_opening_telling_and_choosing(bench: OrderBench) -> None:
     bench.do(Open("gallery:oriented-zebra"))
     bench.do(ChooseColumn(2))
     bench.do(OpenFailure("coral", "de-bonet"))
     bench.do(OpenTab("histograms", (("log", True),)))
-    assert bench.asked == [("coral", "de-bonet"), ("histograms", {"log": True})]
+    assert bench.asked["open_failure"] == [("coral", "de-bonet")]
+    assert bench.asked["open_tab"] == [("histograms", {"log": True})]
     bench.session.set_seed(8)
     bench.do(GoToState(0))
     assert (bench.session.state.seed, bench.session.redo_text) == (5, "seed 8")
@@ -201,25 +183,25 @@ def test_opening_telling_and_choosing(bench: Bench) -> None:
     assert bench.session.state.seed == 5
     bench.do(Tell("Good."))
     bench.do(Tell("Bad.", problem=True))
-    assert bench.opened == ["gallery:oriented-zebra"]
-    assert bench.chosen == [2]
+    assert bench.asked["open_source"] == ["gallery:oriented-zebra"]
+    assert bench.asked["choose"] == [2]
     assert bench.controller.orders == [("said", "Good."), ("problem", "Bad.")]
 
 
-def test_what_is_asked_once_is_told_to_who_asked(bench: Bench) -> None:
+def test_what_is_asked_once_is_told_to_who_asked(bench: OrderBench) -> None:
     answers: list[Any] = []
     assert bench.do(AskOnce("mask", lambda should_stop: should_stop(), answers.append)) == [("once", "mask")]
     assert answers == ["asked"]
 
 
-def test_sweeps_are_run_and_stopped(bench: Bench) -> None:
+def test_sweeps_are_run_and_stopped(bench: OrderBench) -> None:
     plan = SweepPlan((Vary("iterations", (1, 2)),), 64)
     bench.do(RunSweep(1, plan))
     bench.do(StopSweep())
     assert bench.controller.orders == [("run_sweep", 1, plan), ("stop_sweep",)]
 
 
-def test_holes_are_filled_in_a_column_of_their_own_then_in_the_same(bench: Bench) -> None:
+def test_holes_are_filled_in_a_column_of_their_own_then_in_the_same(bench: OrderBench) -> None:
     inputs = (("mask", mask()),)
     bench.do(FillHoles("efros-leung", inputs, (8, 9)))
     column = bench.session.state.columns[-1]
@@ -232,21 +214,21 @@ def test_holes_are_filled_in_a_column_of_their_own_then_in_the_same(bench: Bench
     bench.session.set_params(column.id, EL.params(window=5), "window")
     bench.do(FillHoles("efros-leung", inputs, None))
     assert bench.session.state.columns[-1] == Column(column.id, "efros-leung", EL.params(window=5), inputs, None)
-    assert bench.chosen == [column.id, column.id]
+    assert bench.asked["choose"] == [column.id, column.id]
 
 
-def test_a_cell_becomes_a_column(bench: Bench) -> None:
+def test_a_cell_becomes_a_column(bench: OrderBench) -> None:
     params = HB.params(iterations=4)
     bench.do(CellAsColumn(cell_of("heeger-bergen", params, {"iterations": 4}), 1))
     columns = bench.session.state.columns
     assert [each.id for each in columns] == [1, 3, 2]
     assert (columns[1].params, columns[1].seed) == (params, 9)
     assert columns[0].params == HB.params()
-    assert bench.chosen == [3]
+    assert bench.asked["choose"] == [3]
     assert bench.session.undo_text == "column of a sweep"
 
 
-def test_thresholds_set_by_hand_do_not_go_in_silence(bench: Bench) -> None:
+def test_thresholds_set_by_hand_do_not_go_in_silence(bench: OrderBench) -> None:
     method = methods()["de-bonet"]
     by_hand = method.params(
         thresholds=ThresholdTable((((1, "luminance/laplacian"), 0.5), ((2, "luminance/laplacian"), 0.4)))
@@ -260,18 +242,18 @@ def test_thresholds_set_by_hand_do_not_go_in_silence(bench: Bench) -> None:
     assert bench.controller.orders == said
 
 
-def test_a_cell_is_taken_by_the_column_that_is_wanted(bench: Bench) -> None:
+def test_a_cell_is_taken_by_the_column_that_is_wanted(bench: OrderBench) -> None:
     taken = HB.params(iterations=4)
     bench.session.add_column("heeger-bergen", HB.params())
     bench.do(TakeCell(cell_of("heeger-bergen", taken, {"iterations": 4}), (3, 1)))
     assert [column.params == taken for column in bench.session.state.columns] == [False, False, True]
-    assert (bench.session.state.seed, bench.chosen) == (5, [3])
+    assert (bench.session.state.seed, bench.asked["choose"]) == (5, [3])
     bench.do(TakeCell(cell_of("heeger-bergen", HB.params(), {"seed": 9}), (2,)))
     assert bench.session.state.column(1).params == HB.params()
     assert bench.session.state.seed == 9
 
 
-def test_a_cell_that_no_column_can_take_is_said(bench: Bench) -> None:
+def test_a_cell_that_no_column_can_take_is_said(bench: OrderBench) -> None:
     before = bench.session.state
     bench.do(TakeCell(cell_of("efros-leung", EL.params(), {"window": 5}), (1,)))
     assert bench.session.state is before

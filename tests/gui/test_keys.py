@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 import texlab
-from tests.gui.conftest import ids, make_everything, wait_idle
+from tests.gui.conftest import ids, make_everything, on_screen, wait_idle
 from texlab.window.stops import is_seen, stops
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ TAB = Qt.Key.Key_Tab
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-def on_screen(widget: QWidget) -> bool:
+def in_sight(widget: QWidget) -> bool:
     return widget.isVisible() and not widget.visibleRegion().isEmpty()
 
 
@@ -57,7 +57,7 @@ def test_tab_goes_through_everything_that_is_seen_and_nothing_else(qtbot: Any, e
             # Fields that Tab is a character of would end the walk here.
             assert here not in visited, here.objectName()
             visited.append(here)
-            assert on_screen(here), f"{here.objectName()} cannot be seen beside {dock.name}"
+            assert in_sight(here), f"{here.objectName()} cannot be seen beside {dock.name}"
             assert window._ring.isVisible()
             assert window._ring.around is here
         assert {each.objectName() for each in visited} == {each.objectName() for each in expected}
@@ -87,7 +87,7 @@ def test_the_ring_goes_with_the_window(qtbot: Any, explorer: Explorer) -> None:
     QApplication.processEvents()
     assert not window._ring.isVisible()
     window.show()
-    qtbot.waitExposed(window)
+    on_screen(qtbot, window)
 
 
 def test_the_order_follows_the_eye(explorer: Explorer) -> None:

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 from dock_scenes import column_of, scene_of
+from mouse import on_screen
 
 from tests.gui.conftest import drag, handle_point, ids, result_image, wait_idle
 from tests.stub_method import StubParams
@@ -144,7 +145,7 @@ def test_a_dock_rests_between_answers_and_ends_with_the_newest(qtbot):
     dock = Counting()
     qtbot.addWidget(dock)
     dock.show()
-    qtbot.waitExposed(dock)
+    on_screen(qtbot, dock)
     host = DockHost(dock, Slots(1))
     image = np.zeros((4, 4, 3), np.float32)
     for number in range(20):

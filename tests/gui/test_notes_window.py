@@ -75,8 +75,8 @@ def test_its_controls_and_keys_are_those_of_the_window(
     assert [each.defaultAction() for each in notes.findChildren(QToolButton) if each.defaultAction()] == [
         actions[name] for name in CONTROLS
     ]
-    notes.activateWindow()
-    qtbot.waitActive(notes)
+    with qtbot.waitActive(notes):
+        notes.activateWindow()
     with qtbot.waitSignal(actions["lesson-next"].triggered):
         qtbot.keyClick(notes, Qt.Key.Key_PageDown)
     assert actions["notes"].isChecked()

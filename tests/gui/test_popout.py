@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from mouse import on_screen
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication, QFileDialog
@@ -46,8 +47,8 @@ def stage(qtbot: Any, clock: Clock) -> Any:
     widget = HiddenPicture(clock=clock)
     widget.resize(430, 330)
     qtbot.addWidget(widget)
-    with qtbot.waitExposed(widget):
-        widget.show()
+    widget.show()
+    on_screen(qtbot, widget)
     widget.setFocus()
     return widget
 
@@ -192,8 +193,8 @@ def dialog(qtbot: Any) -> Any:
     widget = PopoutDialog()
     widget.resize(700, 560)
     qtbot.addWidget(widget)
-    with qtbot.waitExposed(widget):
-        widget.show()
+    widget.show()
+    on_screen(qtbot, widget)
     return widget
 
 

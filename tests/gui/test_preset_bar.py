@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 
 import pytest
+from bench import Bench, begin
+from mouse import on_screen
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QComboBox, QFileDialog, QToolButton, QWidget
 
@@ -13,11 +14,8 @@ from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
 from texlab.presets.bar import PresetBar
 from texlab.presets.dialog import PresetDialog
 from texlab.presets.manager import PresetManager
-from texlab.runs.controller import Controller
 from texlab.state.chosen import Column, Sample, State
 from texlab.state.intentions import AskOnce, ChooseColumn, EditParams, Tell
-from texlab.state.session import Session
-from texlab.window.carrier import Carrier
 from texlab_core.documents.presets import Preset, read_preset, write_preset
 from texlab_core.engine.registry import find_method
 
@@ -31,10 +29,11 @@ def paper():
     return Preset(name="paper", method="stub", parameters={"level": 0.25, "border": "wrap"}, note="As printed.")
 
 
-class Bench:
+class PresetBench(Bench):
     """Session, controller, bar and manager, wired as in the window."""
 
     def __init__(self, qtbot, home):
+        super().__init__(choose=lambda column_id: self.session.select(column_id))
         self.qtbot = qtbot
         self.folder = home / "config" / "presets"
         self.window = QWidget()
@@ -43,30 +42,19 @@ class Bench:
         self.bar.resize(260, 30)
         self.window.resize(280, 200)
         self.window.show()
-        qtbot.waitExposed(self.window)
-        self.session = Session()
-        self.controller = Controller(self.session)
+        on_screen(qtbot, self.window)
         self.manager = PresetManager(self.window, self.bar)
-        others = len(inspect.signature(Carrier).parameters) - 2
-        self.carrier = Carrier(self.controller, self.session.select, *[self.never] * others)
         self.manager.intention.connect(self.carrier.carry_out)
-        self.problems, self.said = [], []
-        self.controller.problem.connect(self.problems.append)
-        self.controller.said.connect(self.said.append)
+        self.problems, self.said = self.hear()
         columns = (Column(1, "stub", START), Column(2, "heeger-bergen", find_method("heeger-bergen").params()))
         self.session.changed.connect(lambda *_: self.show())
         self.session.selected.connect(lambda _: self.show())
         self.controller.exemplar_ready.connect(lambda prepared: self.manager.show_exemplar(prepared.exemplar))
-        self.session.apply(State(None, columns, 1, (16, 16), 3), "start")
-        self.session.select(1)
-        self.session.reset_history()
+        begin(self.session, *columns, seed=1, size=(16, 16))
         self.wait()
 
     def show(self):
         self.manager.show_session(self.session.state, self.session.selected_id)
-
-    def never(self, *given):
-        raise AssertionError(f"Nobody asked for this: {given}")
 
     def wait(self):
         """Wait until nothing is read or written."""
@@ -135,9 +123,10 @@ def bench(qtbot, texlab_home, monkeypatch):
     monkeypatch.setattr(
         "texlab.presets.manager.bundled_presets", lambda method: [paper()] if method == "stub" else []
     )
-    made = Bench(qtbot, texlab_home)
+    made = PresetBench(qtbot, texlab_home)
     yield made
     made.wait()
+    assert not any(made.asked.values()), "nobody asked the window for anything"
     made.controller.close()
 
 

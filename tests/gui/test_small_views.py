@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mouse import on_screen
 from PySide6.QtCore import QObject, Qt
 
 from texlab.docks.explain.band_bars import BandBars, Bar
@@ -23,7 +24,7 @@ def placed(qtbot, widget, width=400, height=160):
     widget.set_theme(LIGHT)
     widget.resize(width, height)
     widget.show()
-    qtbot.waitExposed(widget)
+    on_screen(qtbot, widget)
     return widget
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from dock_scenes import image_input
+from mouse import on_screen
 
 from texlab.docks import dock_classes
 from texlab.docks.host import DockHost
@@ -95,7 +96,7 @@ class Watched:
 
     def see(self, scene: Scene) -> None:
         self.dock.show()
-        self._qtbot.waitExposed(self.dock)
+        on_screen(self._qtbot, self.dock)
         self._show(scene)
 
     def pages(self, scene: Scene) -> None:
