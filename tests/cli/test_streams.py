@@ -53,6 +53,26 @@ def test_a_picture_comes_in_and_goes_out(tmp_path, photo, texlab):
     assert np.array_equal(read_image(again, "piped").values, wanted)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="a shell of Windows closes no streams")
+@pytest.mark.parametrize(
+    ("closed", "words", "sentence"),
+    [
+        ("<&-", ("synth", "-"), "Standard input is closed, and an image is wanted from it."),
+        (">&-", ("synth", "in/photo-0.png"), "Standard output is closed, and --out - writes to it."),
+    ],
+    ids=["input", "output"],
+)
+def test_a_closed_stream_is_one_sentence(tmp_path, photo, closed, words, sentence):
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@" {closed}', "sh", sys.executable, "-m", "texlab", *words, *TILING, "--out", "-"],
+        capture_output=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TEXLAB_HOME": str(tmp_path / "texlab-home")},
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr.decode()) == (2, b"", f"texlab: {sentence}\n")
+
+
 def test_a_further_input_comes_in_by_its_name(tmp_path, photo, texlab):
     words = ("synth", photo, "--method", "mixture", "--size", "20x12", "--set", "iterations=1")
     code, out, err = piped(tmp_path, *words, "--input", "second=-", "--out", "-", given=photo.read_bytes())

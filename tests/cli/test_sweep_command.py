@@ -106,7 +106,7 @@ def test_one_preset_over_many_textures(call, tmp_path):
     given = ("--textures", folder, "--textures", GRAVEL, "--method", "stub", "--size", "24x16", "--seed", "5")
     said = call(*given, "--vary", "seed=1,2", "--json")
     found = json.loads(said.out)
-    assert said.err.startswith("One texture is left out: ")
+    assert said.err.startswith("texlab: One texture is left out: ")
     assert [each["name"] for each in found["textures"]] == ["a.png", "b.png", GRAVEL]
     assert found["exemplar"] is None
     assert found["size"] == {"width": 24, "height": 16}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import io
 import json
 import os
@@ -22,6 +23,7 @@ from texlab_core.batch.orders import make_order
 from texlab_core.batch.parcels import Packer, Unpacked
 from texlab_core.batch.pictures import thumbnail
 from texlab_core.batch.places import InProcess
+from texlab_core.batch.processes import Processes
 from texlab_core.batch.rows import Row, Rows
 from texlab_core.batch.running import Progress, run_batch, run_jobs
 from texlab_core.documents.record import read_recipe
@@ -173,6 +175,16 @@ def small_plan_of(folder: Path, **changes: Any) -> Any:
     return plan_from_json(changes, folder=folder)
 
 
+def test_what_is_said_of_an_exemplar_names_it_once(tmp_path: Path) -> None:
+    small_plan(tmp_path)
+    entry = [{"from": "in/photo-0.png", "crops": ["99x99+0+0"]}]
+    plan = small_plan_of(tmp_path, inputs=entry, methods=["tiling"], seeds=[1], sizes=["20x12"])
+    told: list[Progress] = []
+    run_batch(plan, tmp_path / "out", on_progress=told.append)
+    (said,) = [each.error for each in told if each.error]
+    assert said.startswith("in/photo-0.png (crop 99x99+0+0): the crop must lie inside")
+
+
 def test_the_same_job_twice_is_made_once(tmp_path: Path) -> None:
     plan = small_plan(
         tmp_path,
@@ -247,6 +259,41 @@ def test_two_batches_never_share_a_folder(tmp_path: Path) -> None:
         run_batch(plan, tmp_path / "file")
     with pytest.raises(InputError, match="cannot be made or written to"):
         run_batch(plan, tmp_path / "no" / "out")
+
+
+class FullDisk:
+    """A file on a disk that has no room any more."""
+
+    def tell(self) -> int:
+        return 1
+
+    def write(self, text: str) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    def close(self) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_full_disk_is_one_sentence_and_the_folder_is_let_go_of(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan, out = small_plan(tmp_path, methods=["tiling"]), tmp_path / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr("texlab_core.batch.folder.open_appending", lambda path: FullDisk())
+        with pytest.raises(InputError, match=r"times\.csv: cannot be written \(No space left on device\)\.$"):
+            run_batch(plan, out)
+    with monkeypatch.context() as patch:
+        patch.setattr("numpy.savez", lambda file, **arrays: FullDisk().write(""))
+        with pytest.raises(InputError, match=r"cannot be laid down there \(No space left on device\)\.$"):
+            run_batch(plan, out, place=Processes(1))
+    (out / "times.csv").unlink()
+    (out / "times.csv").mkdir()
+    with pytest.raises(InputError, match=r"times\.csv: cannot be written \("):
+        run_batch(plan, out)
+    (out / "times.csv").rmdir()
+    assert (out / "times.csv").parent.is_dir()
+    again = run_batch(plan, out)
+    assert (again.made, again.found) == (5, 1)
 
 
 def test_the_table_holds_every_number(tmp_path: Path) -> None:

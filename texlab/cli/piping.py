@@ -34,7 +34,8 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
     Raises
     ------
     InputError
-        When two arguments are ``-``, nothing comes in, or a picture would go to a terminal or among other output.
+        When two arguments are ``-``, nothing comes in, a stream is closed, or a picture would go to a terminal or
+        among other output.
     """
     reading = [name for name in getattr(command, "READS", ()) if getattr(args, name, None) == STREAM]
     named = getattr(args, "input", None)
@@ -48,6 +49,8 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
         raise InputError(f"Standard input can be only one of {' and '.join([*reading, *roles])}.")
     if ending and getattr(args, "json", False):
         raise InputError("--out - and --json both want standard output; choose one of them.")
+    if ending and sys.stdout is None:
+        raise InputError("Standard output is closed, and --out - writes to it.")
     if ending and sys.stdout.isatty():
         raise InputError(
             "Standard output is a terminal, which cannot show a file; name one, or send it on with |."
@@ -77,6 +80,8 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
 
 
 def _take_in(folder: Path) -> Path:
+    if sys.stdin is None:
+        raise InputError("Standard input is closed, and an image is wanted from it.")
     data = sys.stdin.buffer.read(MAX_BYTES + 1)
     if not data:
         raise InputError("Nothing came from standard input, and an image is wanted.")

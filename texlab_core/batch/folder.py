@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.leftovers import is_leftover
-from texlab_core.files.regular import open_appending
+from texlab_core.files.regular import open_appending, reason
 from texlab_core.files.whole import write_pieces, write_together
 
 if TYPE_CHECKING:
@@ -75,23 +75,32 @@ class BatchFolder:
         except FileExistsError as error:
             raise InputError(f"{error.filename} is a file, and a folder is wanted.") from error
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise InputError(f"{self.path}: cannot be made or written to ({reason}).") from error
+            raise InputError(f"{self.path}: cannot be made or written to ({reason(error)}).") from error
         if not _take(self._lock):
             os.close(self._lock)
             self._lock = None
             raise InputError(
                 f"Another batch is at work in {self.path}; wait for its end, or choose another folder."
             )
-        self._remove_leftovers()
-        self._times = open_appending(self.path / TIMES)
-        if not self._times.tell():
-            self._times.write("job,seconds\r\n")
+        try:
+            self._remove_leftovers()
+            self._times = open_appending(self.path / TIMES)
+            if not self._times.tell():
+                self._note("job,seconds")
+        except OSError as error:
+            self.__exit__()
+            raise InputError(f"{self.path / TIMES}: cannot be written ({reason(error)}).") from error
+        except InputError:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._times is not None:
-            self._times.close()
+            # What could not be written was said then.
+            with contextlib.suppress(OSError):
+                self._times.close()
+            self._times = None
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
@@ -165,8 +174,7 @@ class BatchFolder:
             clears=False,
         )
         if self._times is not None:
-            self._times.write(f"{key},{elapsed_s:.3f}\r\n")
-            self._times.flush()
+            self._note(f"{key},{elapsed_s:.3f}")
         return Record(key, data)
 
     def keep_exemplar(self, sha256: str, thumbnail: bytes | None = None) -> str | None:
@@ -181,6 +189,13 @@ class BatchFolder:
         path = self.path / name
         write_pieces(path, (piece.encode() for piece in pieces))
         return path
+
+    def _note(self, line: str) -> None:
+        try:
+            self._times.write(f"{line}\r\n")
+            self._times.flush()
+        except OSError as error:
+            raise InputError(f"{self.path / TIMES}: cannot be written ({reason(error)}).") from error
 
     def _remove_leftovers(self) -> None:
         shutil.rmtree(self.scratch, ignore_errors=True)

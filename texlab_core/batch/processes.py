@@ -25,6 +25,7 @@ from texlab_core.batch.orders import Order, Outcome
 from texlab_core.batch.parcels import Deposit
 from texlab_core.batch.places import POLL_S
 from texlab_core.errors import Cancelled, InputError, ParamError
+from texlab_core.files.regular import reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -194,11 +195,14 @@ class _Drop(Deposit):
         self.folder = folder
 
     def put(self, name: str, parcel: Parcel) -> None:
-        self.folder.mkdir(parents=True, exist_ok=True)
         temporary = self.folder / f"{name}.tmp"
-        with open(temporary, "wb") as file:
-            np.savez(file, allow_pickle=False, **parcel)
-        os.replace(temporary, self._file(name))
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with open(temporary, "wb") as file:
+                np.savez(file, allow_pickle=False, **parcel)
+            os.replace(temporary, self._file(name))
+        except OSError as error:
+            raise InputError(f"{self.folder}: an input cannot be laid down there ({reason(error)}).") from error
 
     def remove(self, name: str) -> None:
         self._file(name).unlink(missing_ok=True)

@@ -290,7 +290,9 @@ class _Run:
             self.forecast.drop()
             self.rows.add(place, Row.failed(_about(choice, variant, seed, size.text, None), error))
         part = f" ({choice.part})" if choice.part else ""
-        said = error if error.startswith(choice.name) else f"{choice.name}{part}: {error}"
+        # An exemplar is called by its file's name alone.
+        plain = error.removeprefix(f"{os.path.basename(choice.source)}: ")
+        said = error if error.startswith(choice.name) else f"{choice.name}{part}: {plain}"
         self._tell(f"{said} {len(jobs)} jobs need it." if len(jobs) > 1 else said)
 
     def _fail(self, place: int, about: dict[str, Any], error: str, *, counted: bool = False) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +26,7 @@ from texlab.cli.commands._sources import (
     parse_inputs,
     parse_reading,
 )
-from texlab.cli.terminal import interrupted, logged_quietly
+from texlab.cli.terminal import complain, interrupted, logged_quietly
 
 if TYPE_CHECKING:
     from texlab.cli.parser import Parser
@@ -127,7 +126,7 @@ def execute(args: argparse.Namespace) -> int:
     write_sheet(out, sweep, cells, name=recipe.name, note=recipe.note, columns=across, largest=largest, look=look)
     report(sweep, cells, str(out), as_json=args.json)
     if left_out:
-        print(left_out, file=sys.stderr)
+        complain(left_out)
     return 0
 
 
