@@ -11,6 +11,7 @@ from dock_scenes import check_controls, feed, image_input, shown
 from PySide6.QtCore import QPoint, Qt
 
 from tests.gui.conftest import hb, ids, wait_idle
+from texlab.columns.workspace import pinned_pixel
 from texlab.docks.explain import explainer_for
 from texlab.docks.explain.de_bonet import (
     MOST_MARKS,
@@ -70,7 +71,7 @@ class Looker:
 
     @property
     def view(self):
-        return next(iter(self.dock._views.values()))
+        return self.dock.sides[0].view
 
 
 @pytest.fixture
@@ -294,8 +295,55 @@ def test_while_a_column_runs_its_last_explanation_stays(looker):
     assert looker.dock.question(scene(stopped, probe=Probe(1, 3, 4))) is None
 
 
+def test_one_pixel_is_explained_in_a_and_b(looker, column):
+    """The same place in both, side by side, the levels together; B's marks are dotted."""
+    other = finished(column_id=2, alpha=0.4, siblings="parity")
+    row, place = pixel_with_candidates(column)
+    both = dataclasses.replace(scene(column, other, probe=Probe(2, row, place, True)), compared=(1, 2))
+    feed(looker.dock, both)
+    looker.dock.repaint()
+    one, two = looker.dock.sides
+    assert [side.heading.text()[:2] for side in (one, two)] == ["A:", "B:"]
+    assert (one.isVisible(), two.isVisible()) == (True, True)
+    assert one.geometry().right() < two.geometry().left()
+    for side, each in ((one, column), (two, other)):
+        expected = explain(each.result.details.sampling, row, place).at(0)
+        assert np.array_equal(side.view.levels._tiles[-1].places, expected.candidates)
+        # The place of the exemplar that was taken.
+        taken = [(mark.top, mark.left) for mark in side.marks if mark.role == "chosen"]
+        assert taken == [tuple(each.result.maps["source"].data[row, place])]
+        assert {mark.dotted for mark in side.marks} == {side is two}
+    assert set(looker.marks) == {*one.marks, *two.marks}
+    names = [each.accessibleName() for each in (one.view.levels, two.view.levels)]
+    assert names[1] == f"{names[0]}, B"
+    looker.qtbot.keyClick(two.view.levels, Qt.Key.Key_Left)
+    last = len(one.view.levels._tiles) - 1
+    assert [side.view.levels.current[0] for side in (one, two)] == [last - 1, last - 1]
+    looker.qtbot.keyClick(one.view.levels, Qt.Key.Key_Left)
+    assert [side.view.levels.current[0] for side in (one, two)] == [last - 2, last - 2]
+    assert looker.dock.state.text() == "A and B, kept"
+    assert [pinned_pixel(both, each)[0].top for each in (1, 2)] == [row, row]
+    assert pinned_pixel(both, 3) == ()
+    looker.look(row, place)
+    assert not two.isVisible()
+    assert not one.heading.isVisible()
+    assert not any(mark.dotted for mark in looker.marks)
+
+
+def test_beside_an_explanation_stands_why_the_other_has_none(looker, column):
+    waiting = dataclasses.replace(column, id=2, result=None, status="failed", title="Other")
+    both = dataclasses.replace(scene(column, waiting, probe=Probe(1, 4, 5)), compared=(1, 2))
+    feed(looker.dock, both)
+    one, two = looker.dock.sides
+    assert (one.reason, two.reason) == (None, "Other has no finished result to explain.")
+    small = dataclasses.replace(column.result, image=column.result.image[:40, :30])
+    smaller = dataclasses.replace(column, id=2, result=small)
+    feed(looker.dock, dataclasses.replace(both, columns=(column, smaller), probe=Probe(1, 50, 5)))
+    assert two.reason == "The pixel lies beyond this result, which has 30 x 40 pixels."
+
+
 def test_a_pixel_beyond_a_draft_is_the_nearest_one(looker):
-    explained = looker.look(5000, 4)[1]
+    explained = looker.look(5000, 4)[0].explained
     assert explained.explanation.pixel == (95, 4)
 
 
@@ -365,12 +413,12 @@ def test_pointing_explains_and_marks_and_leaving_clears(explorer, qtbot):
     answered(qtbot, explorer)
     dock = dock_of(explorer)
     assert dock.answer is not None
-    row, column = dock.answer[1].explanation.pixel
+    row, column = dock.answer[0].explained.explanation.pixel
     assert abs(row - 20) <= 1
     assert abs(column - 30) <= 1
     source = explorer.controller.column_scene(first).result.maps["source"].data[row, column]
     marks = explorer.workspace.exemplar.pane._marks
-    assert any((place.top(), place.left()) == tuple(source) for place in marks._lines["chosen"])
+    assert any((place.top(), place.left()) == tuple(source) for place in marks._lines["chosen", False])
     point_at(qtbot, explorer, first, -1, -1)
     assert dock.message == INVITATION
     assert not any(marks._lines.values())
@@ -397,16 +445,16 @@ def test_a_click_keeps_the_pixel_while_the_thresholds_change(explorer, qtbot):
     qtbot.mouseClick(pane.viewport(), LEFT, pos=pane.to_widget(10.5, 12.5).toPoint())
     point_at(qtbot, explorer, first, 40, 40)
     dock = dock_of(explorer)
-    pixel = dock.answer[1].explanation.pixel
+    pixel = dock.answer[0].explained.explanation.pixel
     assert abs(pixel[0] - 10) <= 1
-    assert pane._marks._lines["chosen"]
+    assert pane._marks._lines["chosen", False]
     before = dock.answer
     explorer.window.parameters.form.knobs["alpha"].box.setValue(0.3)
     answered(qtbot, explorer)
     assert dock.answer is not before
-    assert dock.answer[1].explanation.pixel == pixel
-    assert dock.answer[1].explanation.thresholds == pytest.approx(0.3)
+    assert dock.answer[0].explained.explanation.pixel == pixel
+    assert dock.answer[0].explained.explanation.thresholds == pytest.approx(0.3)
     qtbot.mouseClick(dock.release, LEFT)
     answered(qtbot, explorer)
     assert dock.message == INVITATION
-    assert not pane._marks._lines["chosen"]
+    assert not pane._marks._lines["chosen", False]

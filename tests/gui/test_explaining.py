@@ -155,7 +155,7 @@ def test_the_dock_shows_matches_and_outlines_them(dock, grown, qtbot):
     top, left = (int(part) for part in found.chosen)
     assert marks[-1] == Mark(top, left, 1, 1, "chosen")
     assert marks[-2] == Mark(top - 3, left - 3, 7, 7, "window")
-    view = dock._pages.currentWidget()
+    view = dock.sides[0].view
     assert view.words.text() == efros_leung.summary(efros_leung.explain_pixel(grown, row, column))
     other = next(index for index, patch in enumerate(view.grid.patches) if patch.frame == "match")
     place = view._explained.places[other]
@@ -212,8 +212,8 @@ def test_large_pictures_are_sampled(matched, monkeypatch):
 
 def test_the_dock_shows_bars_and_the_picture_of_the_chosen_one(dock, matched, qtbot):
     answer = feed(dock, scene(matched, 4, 6))
-    explained = answer[1]
-    view = dock._pages.currentWidget()
+    explained = answer[0].explained
+    view = dock.sides[0].view
     strongest = max(range(len(explained.bars)), key=lambda index: abs(explained.bars[index].value))
     assert view.bars.selected == strongest
     assert np.array_equal(view.pane.picture, explained.built.pictures[strongest])

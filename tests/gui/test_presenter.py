@@ -268,7 +268,7 @@ def test_marks_are_painted_where_they_are(qtbot: Any) -> None:
     qtbot.addWidget(pane)
     pane.set_marks((Mark(10, 3, 2, 5, "chosen"),), (100.0, 20.0))
     assert pane._marks is not None
-    assert pane._marks._lines["chosen"] == [QRectF(23, 110, 5, 2)]
+    assert pane._marks._lines["chosen", False] == [QRectF(23, 110, 5, 2)]
     assert pane._marks.boundingRect() == QRectF(15, 102, 21, 18)
 
 

@@ -292,6 +292,7 @@ class Explorer(QObject):
         session.selected.connect(lambda _: presenter.show_session())
         controller.scene_changed.connect(presenter.show_scene)
         controller.scene_changed.connect(self.tuning.show_scene)
+        self.tuning.compared.connect(controller.tell_compared)
         controller.exemplar_ready.connect(presenter.show_exemplar)
         controller.errands_changed.connect(window.status.show_errands)
         controller.problem.connect(lambda text: window.message_bar.tell(text, "problem"))

@@ -12,7 +12,7 @@ from texlab.columns.column import ColumnView
 from texlab.columns.exemplar import ExemplarView
 from texlab.columns.grid import Grid
 from texlab.columns.titles import titles
-from texlab.state.scene import are_same
+from texlab.state.scene import are_same, asked_columns
 from texlab.style.pictures import Mark
 from texlab.widgets.once import Once
 from texlab.widgets.view_link import ViewLink
@@ -355,8 +355,8 @@ class Workspace(QScrollArea):
 
 
 def pinned_pixel(scene: Scene, column_id: int) -> tuple[Mark, ...]:
-    """Return the mark of the pixel that is kept in a column, if there is one."""
+    """Return the mark of the pixel that is kept in a column, or in the one that it is compared with."""
     probe = scene.probe
-    if probe is None or not probe.pinned or probe.column_id != column_id:
+    if probe is None or not probe.pinned or column_id not in asked_columns(scene):
         return ()
     return (Mark(probe.row, probe.column, 1, 1, "chosen"),)

@@ -86,6 +86,7 @@ class Controller(QObject):
         self._tuning = TuningRunner(self.slots, self.warmth, self)
         self._tuning.changed.connect(self._refresh.start)
         self._opened: tuple[str, ...] = ()
+        self._compared: tuple[int, ...] = ()
         self._fills = FillRunner(self.slots, self.warmth, self)
         self._fills.changed.connect(self._refresh.start)
         self.all_idle.connect(self._load_the_rest)
@@ -125,7 +126,14 @@ class Controller(QObject):
             self._fills.scene,
             self.session.history,
             self._opened,
+            self._compared,
         )
+
+    def tell_compared(self, pair: tuple[int, ...]) -> None:
+        """Show the docks which two columns are compared; none when that is over."""
+        if pair != self._compared:
+            self._compared = pair
+            self._refresh.start()
 
     def tell_opened(self, paths: tuple[str, ...]) -> None:
         """Show the docks which files are open; the newest first."""

@@ -211,6 +211,8 @@ class Scene:
         The steps that undo and redo know.
     opened
         Paths of the pictures that were opened together, else of those opened of late, the newest first.
+    compared
+        Ids of A and B while these two are compared; empty otherwise.
     """
 
     exemplar: ImageInput | None = None
@@ -227,11 +229,20 @@ class Scene:
     fill: FillScene = NO_FILL
     history: History = NO_HISTORY
     opened: tuple[str, ...] = ()
+    compared: tuple[int, ...] = ()
 
     @property
     def selected(self) -> ColumnScene | None:
         """The chosen column."""
         return next((column for column in self.columns if column.id == self.selected_id), None)
+
+
+def asked_columns(scene: Scene) -> tuple[int, ...]:
+    """Return whose pixel the user asks about: a column, or A and B while the column is one of them."""
+    if scene.probe is None:
+        return ()
+    asked = scene.probe.column_id
+    return scene.compared if asked in scene.compared else (asked,)
 
 
 def are_same(columns: Sequence[ColumnScene], others: Sequence[ColumnScene]) -> bool:

@@ -63,6 +63,7 @@ class Mark:
     """A rectangle to outline in the exemplar (or a result), in pixels; ``role`` decides its colour.
 
     ``chosen`` is the one that was taken, ``candidate`` another that could have been, ``window`` a neighbourhood.
+    ``dotted`` ones belong to the second of two things that are compared.
     """
 
     top: float
@@ -70,3 +71,4 @@ class Mark:
     height: float
     width: float
     role: Literal["chosen", "candidate", "window"] = "candidate"
+    dotted: bool = False

@@ -36,7 +36,7 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
 
     def __init__(self) -> None:
         super().__init__()
-        self._lines: dict[str, list[QRectF]] = {}
+        self._lines: dict[tuple[str, bool], list[QRectF]] = {}
         self._bounds = QRectF()
         self.thickness = 1.0
         self.setZValue(20)
@@ -44,11 +44,11 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
     def show_marks(self, marks: tuple[Mark, ...], offset: tuple[float, float]) -> None:
         """Outline these places."""
         self.prepareGeometryChange()
-        self._lines = {role: [] for role in MARK_COLOURS}
+        self._lines = {(role, dotted): [] for role in MARK_COLOURS for dotted in (False, True)}
         self._bounds = QRectF()
         for mark in marks:
             place = QRectF(mark.left + offset[1], mark.top + offset[0], mark.width, mark.height)
-            self._lines[mark.role].append(place)
+            self._lines[mark.role, mark.dotted].append(place)
             self._bounds = self._bounds.united(place)
         self.update()
 
@@ -61,11 +61,13 @@ class MarksItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no ty
         """Paint a dark line under a bright one: seen on any picture, and never smaller than a few pixels."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
         least = SMALLEST_MARK / max(abs(painter.worldTransform().m11()), 1e-6)
-        for role, colour in MARK_COLOURS.items():
-            places = [_enlarged(place, least) for place in self._lines.get(role, [])]
+        for (role, dotted), outlined in self._lines.items():
+            places = [_enlarged(place, least) for place in outlined]
             if places:
-                for pen_colour, width in (("#000000", 3), (colour, 2 if role == "chosen" else 1)):
-                    painter.setPen(pg.mkPen(pen_colour, width=width * self.thickness))
+                line = Qt.PenStyle.DotLine if dotted else Qt.PenStyle.SolidLine
+                lines = ("#000000", 3, Qt.PenStyle.SolidLine), (MARK_COLOURS[role], 1 + (role == "chosen"), line)
+                for colour, width, style in lines:
+                    painter.setPen(pg.mkPen(colour, width=width * self.thickness, style=style))
                     painter.drawRects(places)
 
 

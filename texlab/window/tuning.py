@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QSignalBlocker
+from PySide6.QtCore import QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from texlab.columns.comparison import Comparison, other_of
@@ -77,8 +77,11 @@ class CompareBar(QWidget):
 class Tuning(QObject):
     """Follows what is chosen, and compares it with what was chosen before.
 
-    In the layout Tune (:meth:`set_active`) the stage shows exemplar, A and B alone.
+    In the layout Tune (:meth:`set_active`) the stage shows exemplar, A and B alone; ``compared(pair)`` tells their
+    ids then, and an empty tuple otherwise.
     """
+
+    compared = Signal(object)
 
     def __init__(self, window: MainWindow, workspace: Workspace) -> None:
         super().__init__(window)
@@ -91,6 +94,7 @@ class Tuning(QObject):
         self._chosen, self._before = 0, 0
         self._offered: tuple[tuple[int, str], ...] = ()
         self._active = False
+        self._told: tuple[int, ...] = ()
         self._pictures: dict[int, Picture | None] = {}
         self._magnifiers: dict[ImagePane, Magnifier] = {}
         self._magnifies = False
@@ -152,6 +156,10 @@ class Tuning(QObject):
             self._window.actions_by_name[name].setEnabled(bool(self.b))
         for each, column in self._workspace.columns.items():
             column.set_badge("" if not self._active else "A" if each == self.a else "B" if each == self.b else "")
+        pair = (self.a, self.b) if self._active and self.a and self.b else ()
+        if pair != self._told:
+            self._told = pair
+            self.compared.emit(pair)
         self._say()
 
     def _compare_with(self, column_id: int) -> None:

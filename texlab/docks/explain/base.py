@@ -28,14 +28,20 @@ class ExplanationView(QWidget):
 
     ``marks_changed(marks)``: the places of the exemplar to outline, a tuple of ``Mark``.
     ``intention(value)``: what the user wants to be done, a value of :mod:`texlab.state.intentions`.
+    ``aspect_changed(aspect)``: the user looks at another part of the explanation; another view beside it may
+    follow with :meth:`take_aspect`.
     """
 
     marks_changed = Signal(object)
     intention = Signal(object)
+    aspect_changed = Signal(object)
 
     def show_explanation(self, explained: Any) -> None:
         """Show what ``Explainer.explain`` returned, and tell which places to outline."""
         raise NotImplementedError
+
+    def take_aspect(self, aspect: Any) -> None:
+        """Look at the part of the explanation that the same kind of view beside it looks at."""
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

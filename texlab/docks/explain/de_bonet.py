@@ -217,6 +217,15 @@ class DeBonetView(ExplanationView):
         self._show_level(tile, place)
         if moved:
             self.marks_changed.emit(self._marks(tile))
+            self.aspect_changed.emit(self._from_finest)
+
+    def take_aspect(self, aspect: int) -> None:
+        """Look at this level, counted from the finest."""
+        explained = self._explained
+        if explained is None or aspect == self._from_finest:
+            return
+        self._from_finest = min(aspect, len(explained.explanation.levels) - 1)
+        self.show_explanation(explained)
 
     def _point(self, tile: int, place: int) -> None:
         """Show the candidate under the pointer, and the selected one again when it has gone."""

@@ -1,28 +1,58 @@
-"""Why the pixel under the pointer is there."""
+"""Why the pixel under the pointer is there; of A and B while two columns are compared."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QStackedLayout
+from PySide6.QtWidgets import QHBoxLayout
 
+from texlab.columns.titles import titles
 from texlab.docks.base import Question
 from texlab.docks.explain import explainer_for
+from texlab.docks.explain.side import Side
 from texlab.docks.explain.unexplained import without_words
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.state.intentions import Pin, ShowMarks
+from texlab.state.scene import asked_columns
 from texlab.widgets.plain import Label
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from texlab.docks.explain.base import Explainer, ExplanationView
+    from texlab.docks.explain.base import Explainer
     from texlab.state.scene import ColumnScene, Probe, Scene
     from texlab.style.pictures import Mark
 
 INVITATION = "Point at a pixel of a result to see why it is there; click it to keep it."
+LETTERS = "AB"
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What is asked about one column: why it cannot be explained, or how it is."""
+
+    reason: str = ""
+    key: tuple[Any, ...] = ()
+    explainer: Explainer | None = None
+    explain: Callable[[Callable[[], bool]], Any] | None = None
+
+    def answer(self, heading: str, should_stop: Callable[[], bool]) -> Answer:
+        """Return what is to be shown below a heading (in a background thread)."""
+        explained = None if self.explain is None else self.explain(should_stop)
+        return Answer(heading, self.reason, self.explainer, explained)
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What one side shows: what ``explainer`` returned, or the reason why there is nothing."""
+
+    heading: str
+    reason: str
+    explainer: Explainer | None
+    explained: Any
 
 
 class ExplainDock(FramedDock):
@@ -36,7 +66,8 @@ class ExplainDock(FramedDock):
         "from the coarsest level to the finest with their candidates, and the parent structures that were "
         "compared, with the thresholds as limits; arrows left and right change the level, up and down the "
         "candidate. For Efros-Leung: the window, its best matches, and the one that was copied. For "
-        "Heeger-Bergen: what every subband adds to the pixel."
+        "Heeger-Bergen: what every subband adds to the pixel. While A and B are compared (layout Tune), the same "
+        "pixel is explained in both, side by side; B's places of the exemplar are dotted."
     )
     order = 22
     follows_pointer = True
@@ -47,12 +78,10 @@ class ExplainDock(FramedDock):
 
     def build(self) -> None:
         """Make the controls; the views come when they are needed."""
-        self._views: dict[int, ExplanationView] = {}
         self._probe: Probe | None = None
         self._size = (1, 1)
-        self._shown: tuple[int, Question, Explainer] | None = None
+        self._last: dict[int, Part] = {}
         self._marks: tuple[Mark, ...] = ()
-        self._marked = False
         self._seen = True
         self.pixel_column = self.add_number(
             "column", "x", "Column of the pixel; typing one keeps the pixel", (0, 0), self._typed
@@ -65,82 +94,104 @@ class ExplainDock(FramedDock):
         )
         self.state = Label()
         self.add_control(self.state, "state", "Which pixel", "The column and the pixel that are explained")
-        self._pages = QStackedLayout(self.body)
+        self.sides = tuple(Side(letter) for letter in LETTERS)
+        layout = QHBoxLayout(self.body)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        for side, other in zip(self.sides, reversed(self.sides), strict=True):
+            layout.addWidget(side, 1)
+            side.marks_changed.connect(lambda _: self._show_marks())
+            side.intention.connect(self.intention)
+            side.aspect_changed.connect(other.take_aspect)
+        self.sides[1].hide()
+        self.setFocusProxy(self.sides[0])
         self._show_probe(None, None)
 
     def question(self, scene: Scene) -> Question | None:
         """Ask about the pixel under the pointer."""
         probe = scene.probe
-        column = next((each for each in scene.columns if probe is not None and each.id == probe.column_id), None)
-        self._show_probe(probe, column)
-        self.why = ""
-        if probe is None or column is None:
+        every = zip(scene.columns, titles(scene.columns), strict=True)
+        named = {column.id: (column, title) for column, title in every}
+        asked = [named[each] for each in asked_columns(scene) if each in named]
+        both = len(asked) > 1
+        pointed = None if probe is None else named.get(probe.column_id, (None, ""))[0]
+        self._show_probe(probe, pointed, both=both)
+        lettered = zip(LETTERS, asked, strict=False)
+        headings = [f"{letter}: {title}" if both else "" for letter, (_, title) in lettered]
+        parts = [self._part(column, probe) for column, _ in asked if probe is not None]
+        if parts:
+            self._last = {column.id: part for (column, _), part in zip(asked, parts, strict=True) if part.key}
+        self.why = "" if both or not parts else parts[0].reason
+        if not parts or self.why:
             return None
+
+        def compute(should_stop: Callable[[], bool]) -> list[Answer]:
+            return [part.answer(heading, should_stop) for heading, part in zip(headings, parts, strict=True)]
+
+        return Question((self.name, *headings, *(part.key or part.reason for part in parts)), compute)
+
+    def _part(self, column: ColumnScene, probe: Probe) -> Part:
+        """Return how the pixel is explained in a column."""
         result = column.result
         if result is None:
             # While the column runs, the explanation of its last result stays.
-            if self._shown is not None and self._shown[0] == column.id and column.status in ("waiting", "running"):
-                return self._shown[1]
-            self._shown = None
-            self.why = f"{column.title} has no finished result to explain."
-            return None
+            if column.id in self._last and column.status in ("waiting", "running"):
+                return self._last[column.id]
+            return Part(f"{column.title} has no finished result to explain.")
         explainer = explainer_for(result.details)
         if explainer is None and column.stored:
-            self.why = (
+            return Part(
                 f"The result of {column.title} is kept from before; F5 makes it anew, with what explains it."
             )
-            return None
         if explainer is None:
-            self.why = without_words(column)
-            return None
+            return Part(without_words(column))
         height, width = result.image.shape[:2]
+        if column.id != probe.column_id and not (probe.row < height and probe.column < width):
+            return Part(f"The pixel lies beyond this result, which has {width} x {height} pixels.")
         row, place = min(probe.row, height - 1), min(probe.column, width - 1)
         explain = explainer.explain
+        return Part(
+            key=(Same(result), row, place),
+            explainer=explainer,
+            explain=lambda should_stop: explain(result, row, place, should_stop),
+        )
 
-        def compute(should_stop: Callable[[], bool]) -> tuple[Explainer, Any]:
-            return explainer, explain(result, row, place, should_stop)
-
-        question = Question((self.name, Same(result), row, place), compute)
-        self._shown = (column.id, question, explainer)
-        return question
-
-    def show_answer(self, answer: tuple[Explainer, Any]) -> None:
-        """Show the explanation in the view of its kind."""
-        explainer, explained = answer
-        view = self._views.get(id(explainer))
-        if view is None:
-            view = self._views[id(explainer)] = explainer.make_view()
-            view.set_theme(self.theme)
-            view.marks_changed.connect(self._mark)
-            view.intention.connect(self.intention)
-            self._pages.addWidget(view)
-        self._pages.setCurrentWidget(view)
-        self.setFocusProxy(view)
-        view.show_explanation(explained)
+    def show_answer(self, answer: list[Answer]) -> None:
+        """Show the explanations, each in the view of its kind."""
+        for side, each in zip(self.sides, answer, strict=False):
+            side.set_heading(each.heading)
+            if each.explainer is None:
+                side.show_reason(each.reason)
+            else:
+                side.show_explanation(each.explainer, each.explained, self.theme)
+        if len(answer) == 1:
+            self.sides[1].show_reason("")
+        self.sides[1].setVisible(len(answer) > 1)
 
     def forget(self) -> None:
         """Let go of what is explained."""
         super().forget()
-        self._shown = None
+        self._last = {}
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, and take the marks away."""
         super().present_nothing(self.why or INVITATION)
-        self._mark(())
+        for side in self.sides:
+            side.show_reason(self.why or INVITATION)
 
     def set_seen(self, seen: bool) -> None:
         """Outline places in the exemplar only while what they belong to is seen."""
         self._seen = seen
-        self._mark(self._marks)
+        self._show_marks()
 
-    def _mark(self, marks: tuple[Mark, ...]) -> None:
-        self._marks = marks
-        shown = marks if self._seen else ()
-        if shown or self._marked:
-            self._marked = bool(shown)
+    def _show_marks(self) -> None:
+        # B's lie below, and what A and B share is A's.
+        shown = tuple(mark for side in reversed(self.sides) for mark in side.marks) if self._seen else ()
+        if shown != self._marks:
+            self._marks = shown
             self.intention.emit(ShowMarks(shown))
 
-    def _show_probe(self, probe: Probe | None, column: ColumnScene | None) -> None:
+    def _show_probe(self, probe: Probe | None, column: ColumnScene | None, *, both: bool = False) -> None:
         self._probe = probe
         known = column is not None and column.image is not None
         if column is not None and column.image is not None:
@@ -156,7 +207,8 @@ class ExplainDock(FramedDock):
                 box.setValue(value)
         self.release.setEnabled(probe is not None and probe.pinned)
         kept = probe is not None and probe.pinned
-        words = "" if column is None else f"{column.title}, {'kept' if kept else 'under the pointer'}"
+        whose = "A and B" if both else "" if column is None else column.title
+        words = "" if column is None else f"{whose}, {'kept' if kept else 'under the pointer'}"
         if words != self.state.text():
             self.state.setText(words)
 
