@@ -23,6 +23,7 @@ from texlab_core.documents.project import (
     encode_project,
     save_project,
 )
+from texlab_core.documents.project_history import ProjectPast
 from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.inputs import ArraysInput, Crop, ImageInput
 from texlab_core.engine.levels import Levels
@@ -39,6 +40,12 @@ DEEP = RANDOM.integers(0, 65536, (40, 44, 3), np.uint16)
 
 def column(method="tiling", **more):
     return ProjectColumn(method, find_method(method).params(), **more)
+
+
+def pack(project):
+    """Return the files of a project by name."""
+    with zipfile.ZipFile(io.BytesIO(encode_project(project))) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
 
 
 def whole():
@@ -100,6 +107,88 @@ def test_the_same_project_has_the_same_bytes(saved, tmp_path):
     again = tmp_path / "b.texlab"
     save_project(again, read_project(saved))
     assert again.read_bytes() == saved.read_bytes()
+
+
+def pasts(count=3, channels=3):
+    method = find_method("heeger-bergen")
+    found = []
+    for place in range(count):
+        params = method.params().replace(iterations=place % 5 + 1)
+        gray = RANDOM.integers(0, 256, (5 + place, 64 - place, 3 if channels == 3 else 1), np.uint8)
+        small = gray if channels == 3 else gray.repeat(3, axis=2)
+        found.append(ProjectPast("heeger-bergen", params, (20 + place, 30), place, small, measures={"cuts": 1.5}))
+    return tuple(found)
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+def test_earlier_results_come_back(tmp_path, channels):
+    mask = as_exemplar(RANDOM.integers(0, 2, (40, 44)).astype(np.float32), name="mask")
+    filled = ProjectPast(
+        "efros-leung", find_method("efros-leung").params(), (40, 44), 3, pasts(1)[0].thumbnail, {"mask": mask}
+    )
+    histories = pasts(3, channels), (filled,), ()
+    made = dataclasses.replace(whole(), chosen=0, columns=tuple(column(history=each) for each in histories))
+    path = tmp_path / "a.texlab"
+    save_project(path, made)
+    for before, now in zip(histories, read_project(path).columns, strict=True):
+        assert len(before) == len(now.history)
+        for one, other in zip(before, now.history, strict=True):
+            for name in ("method", "params", "size", "seed", "measures"):
+                assert getattr(one, name) == getattr(other, name)
+            assert {each: one.inputs[each].sha256 for each in one.inputs} == {
+                each: other.inputs[each].sha256 for each in other.inputs
+            }
+            np.testing.assert_array_equal(one.thumbnail, other.thumbnail)
+
+
+def test_only_the_newest_earlier_results_are_kept(tmp_path):
+    path = tmp_path / "a.texlab"
+    save_project(path, dataclasses.replace(whole(), chosen=0, columns=(column(history=pasts(30)),)))
+    (found,) = read_project(path).columns
+    assert [past.seed for past in found.history] == list(range(6, 30))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"seed": -1}, {"size": {"width": 0, "height": 3}}, {"method": 4}, {"method": "none"}, {"extra": 1},
+        {"thumbnail": [65, 3]}, {"thumbnail": [0, 3]}, {"thumbnail": [6, 64]}, {"thumbnail": "x"},
+        {"inputs": {"mask": "0" * 64}}, {"inputs": []}, {"measures": {"a": "b"}}, {"parameters": {"no": 1}},
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_a_history_is_one_sentence(tmp_path, change):
+    files = pack(dataclasses.replace(whole(), chosen=0, columns=(column(history=pasts(2)),)))
+    data = json.loads(files["project.json"])
+    data["columns"][0]["history"][0] |= change
+    path = tmp_path / "a.texlab"
+    path.write_bytes(pack_archive(files | {"project.json": json.dumps(data).encode()}))
+    with pytest.raises(ProjectError) as told:
+        read_project(path)
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("sheet", [None, b"", b"\x89PNG", b"no picture"])
+def test_a_history_whose_pictures_are_missing_is_refused(tmp_path, sheet):
+    files = pack(dataclasses.replace(whole(), chosen=0, columns=(column(history=pasts(2)),)))
+    name = "history/0.png"
+    path = tmp_path / "a.texlab"
+    path.write_bytes(
+        pack_archive(
+            {each: data for each, data in files.items() if each != name} | ({} if sheet is None else {name: sheet})
+        )
+    )
+    with pytest.raises(ProjectError, match="histor"):
+        read_project(path)
+
+
+def test_a_history_that_is_too_long_is_refused(tmp_path):
+    files = pack(dataclasses.replace(whole(), chosen=0, columns=(column(history=pasts(2)),)))
+    data = json.loads(files["project.json"])
+    data["columns"][0]["history"] *= 13
+    path = tmp_path / "a.texlab"
+    path.write_bytes(pack_archive(files | {"project.json": json.dumps(data).encode()}))
+    with pytest.raises(ProjectError, match="at most 24"):
+        read_project(path)
 
 
 def test_an_input_is_kept_once(tmp_path):
@@ -223,7 +312,7 @@ def test_only_regular_files_are_read(tmp_path):
 
 
 CHANGES = {
-    "format": "preset", "version": 3, "extra": 1, "seed": -1, "size": {"width": 0, "height": 3}, "scale": 0,
+    "format": "preset", "version": 4, "extra": 1, "seed": -1, "size": {"width": 0, "height": 3}, "scale": 0,
     "chosen": 4, "crop": [0, 0, 400, 400], "columns": {}, "presets": [{"format": "texlab-preset"}], "notes": 3,
     "layout": "wild", "exemplar": "0" * 64,
 }  # fmt: skip
@@ -335,6 +424,7 @@ def test_the_part_in_use_comes_before_a_large_picture(large):
 def test_only_what_has_a_part_of_a_large_picture_is_of_the_second_version(large, tmp_path):
     _, project = large
     for change, version in (({}, 2), ({"scale": 1.0, "crop": None}, 1)):
+        assert not project.columns[0].history
         other = tmp_path / "other.texlab"
         save_project(other, dataclasses.replace(project, **change))
         with zipfile.ZipFile(other) as archive:

@@ -19,6 +19,7 @@ from texlab.state.intentions import (
     ChooseColumn,
     EditField,
     EditInputs,
+    EditNotes,
     EditParams,
     FillHoles,
     GoToState,
@@ -121,6 +122,16 @@ def test_every_intention_is_a_frozen_value() -> None:
     for each in known:
         assert each.__dataclass_params__.frozen, each
         assert each.__doc__.endswith(".") or "Parameters" in each.__doc__
+
+
+def test_a_run_of_words_is_one_step_of_the_history(bench: OrderBench) -> None:
+    for text, final in (("a", False), ("ab", False), ("abc", True), ("abcd", False)):
+        bench.do(EditNotes(text, final))
+    assert bench.session.state.notes == "abcd"
+    bench.session.undo()
+    assert bench.session.state.notes == "abc"
+    bench.session.undo()
+    assert bench.session.state.notes == ""
 
 
 def test_edits_reach_the_controller_as_they_are(bench: OrderBench) -> None:

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.columns.status import figures, numbers_of, shows_numbers
-from texlab.state.chosen import Sample, State
+from texlab.state.chosen import Column, Sample, State
+from texlab.state.scene import Past
 from texlab.state.session import Session
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import open_project, project_of
@@ -20,6 +21,7 @@ from texlab_core.documents.presets import Preset
 from texlab_core.documents.project import save_project
 from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.registry import find_method
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
@@ -127,16 +129,59 @@ def test_the_menus_ask_for_a_name(
     assert answers == []
 
 
+def test_earlier_results_and_notes_come_back(
+    qtbot: Any, explorer: Explorer, open_window: Callable[..., Explorer], tmp_path: Path
+) -> None:
+    first, _ = ids(explorer)
+    column = explorer.session.state.column(first)
+    explorer.controller.edit_params(first, column.params.replace(iterations=1), "iterations", final=True)
+    wait_idle(qtbot, explorer)
+    notes = explorer.hosts["notes"].dock
+    explorer.window.raise_dock("notes")
+    qtbot.keyClicks(notes.field, "Too soft at 1 iteration.")
+    # Saving takes what is being typed.
+    explorer.window.actions_by_name["run-all"].trigger()
+    history = explorer.controller.column_scene(first).history
+    assert len(history) == 2
+    path = saved(qtbot, explorer, tmp_path / "a.texlab")
+    other = open_window("gallery:stochastic-grass", [hb(iterations=3)])
+    other.opener.open(str(path))
+    qtbot.waitUntil(lambda: len(other.session.state.columns) == 2)
+    wait_idle(qtbot, other)
+    assert other.session.state.notes == "Too soft at 1 iteration."
+    found = other.controller.column_scene(ids(other)[0]).history
+    # What runs again is the same job: it is there once.
+    assert [each.key for each in found] == [each.key for each in history]
+    for one, again in zip(history, found, strict=True):
+        np.testing.assert_array_equal(one.thumbnail, again.thumbnail)
+        assert again.exemplar == other.controller.exemplar.sha256
+    other.session.take_past(ids(other)[0], found[0])
+    assert other.session.state.column(ids(other)[0]).params == column.params
+    wait_idle(qtbot, other)
+    other.session.undo()
+    other.session.undo()
+    assert other.session.state.notes == ""
+    wait_idle(qtbot, other)
+
+
 def test_a_copy_for_a_student_tells_nothing_of_this_computer(tmp_path: Path) -> None:
     pixels = np.random.default_rng(0).random((16, 16, 3)).astype(np.float32)
     image = as_exemplar(pixels, name="/home/someone/secret/wall.png")
-    state = State(Sample(image, path="/home/someone/secret/wall.png"), (), 1, (16, 16), 1)
+    mask = as_exemplar(pixels[:4, :4, :1], name="C:\\someone\\mask.png", crop=Crop(0, 0, 3, 3))
+    params = find_method("efros-leung").params()
+    given = (("mask", mask),)
+    state = State(Sample(image, path="/home/someone/secret/wall.png"), (Column(1, "efros-leung", params, given),))
+    past = Past((), "", "efros-leung", params, given, (4, 4), 1, np.zeros((4, 4, 3), np.uint8))
     path = tmp_path / "a.texlab"
-    save_project(path, project_of(state, 0, {}, "", for_student=True))
+    save_project(path, project_of(state, 0, {}, "", histories={1: [past]}, for_student=True))
     with zipfile.ZipFile(path) as archive:
         text = b"".join(archive.read(name) for name in archive.namelist())
     assert b"someone" not in text
-    assert read_project(path).exemplar.name == "wall.png"  # type: ignore[union-attr]
+    made = read_project(path)
+    assert made.exemplar is not None
+    assert made.exemplar.name == "wall.png"
+    for inputs in (made.columns[0].inputs, made.columns[0].history[0].inputs):
+        assert (inputs["mask"].name, inputs["mask"].sha256) == ("mask.png", mask.sha256)
 
 
 def test_presets_of_the_methods_come_along(qtbot: Any, explorer: Explorer, tmp_path: Path) -> None:

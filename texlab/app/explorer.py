@@ -28,7 +28,7 @@ from texlab.storage.paths import config_dir, results_dir
 from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.sessions import claim, told_of_others
-from texlab.storage.settings import OLD_SESSION, columns_from_json, has_kept_inputs, seed_and_size
+from texlab.storage.settings import OLD_SESSION, columns_from_json, has_kept_inputs, notes_of, seed_and_size
 from texlab.storage.stored_results import StoredResults
 from texlab.widgets.settling import settle_all
 from texlab.window.carrier import Carrier
@@ -188,7 +188,7 @@ class Explorer(QObject):
         chosen = columns or first_columns()
         seed, size = seed_and_size(saved)
         made = tuple(Column(place + 1, *each) for place, each in enumerate(chosen))
-        self.session.apply(State(None, made, seed, size, len(made) + 1), "start")
+        self.session.apply(State(None, made, seed, size, len(made) + 1, notes_of(saved)), "start")
         place = saved.get("selected", 0) if isinstance(saved, dict) else 0
         place = place if isinstance(place, int) and 0 <= place < len(made) else 0
         self.handlers.select(made[place].id)

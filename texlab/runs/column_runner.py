@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from texlab.runs.column_run import Keep
     from texlab.state.chosen import Column, State
+    from texlab.state.scene import Past
     from texlab.style.pictures import Picture
     from texlab_core.engine.cache import AnalysisCache
     from texlab_core.engine.inputs import ImageInput
@@ -97,6 +98,12 @@ class ColumnRunner(QObject):
         if self.scene.picture is None:
             size = (picture.shape[0], picture.shape[1]) if measures else None
             self._show(picture=picture, measures=measures, measured_size=size)
+
+    def remember(self, history: tuple[Past, ...]) -> None:
+        """Put earlier results before those of the history."""
+        for past in self.scene.history:
+            history = remembered(history, past)
+        self._show(history=history)
 
     @property
     def running(self) -> bool:

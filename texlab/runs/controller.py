@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from texlab.state.chosen import Sample, State
     from texlab.state.filling import FillPlan
     from texlab.state.lesson_scene import LessonScene
+    from texlab.state.scene import Past
     from texlab.state.session import Session
     from texlab.state.sweeps import SweepPlan
     from texlab.state.tuning import TuningPlan
@@ -127,6 +128,7 @@ class Controller(QObject):
             self.session.history,
             self._opened,
             self._compared,
+            self.session.state.notes,
         )
 
     def tell_compared(self, pair: tuple[int, ...]) -> None:
@@ -188,6 +190,11 @@ class Controller(QObject):
         """Show an earlier result of a column with its numbers, until that of the present run comes."""
         if (runner := self._runners.get(column_id)) is not None:
             runner.show_stored(picture, measures)
+
+    def remember(self, column_id: int, history: tuple[Past, ...]) -> None:
+        """Give a column earlier results to go back to, before those that it has."""
+        if (runner := self._runners.get(column_id)) is not None:
+            runner.remember(history)
 
     def show_lesson(self, lesson: LessonScene) -> None:
         """Tell everybody about the lesson that is given."""

@@ -101,6 +101,8 @@ class State:
     seed: int = 1
     size: tuple[int, int] = DEFAULT_SIZE
     next_id: int = 1
+    notes: str = ""
+    """What the user wrote about the project."""
 
     def column(self, column_id: int) -> Column | None:
         """Return the column with this id."""

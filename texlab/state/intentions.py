@@ -211,6 +211,14 @@ class GoToState:
 
 
 @dataclass(frozen=True)
+class EditNotes:
+    """Change the project's notes; what follows before ``final`` is the same step of the history."""
+
+    text: str
+    final: bool = True
+
+
+@dataclass(frozen=True)
 class OpenTab:
     """Bring a tab to the front, with its controls set by name as a user would."""
 
@@ -373,6 +381,7 @@ Intention = (
     | OpenFailure
     | OpenTab
     | GoToState
+    | EditNotes
     | Tell
     | AskOnce
     | RunSweep

@@ -213,6 +213,8 @@ class Scene:
         Paths of the pictures that were opened together, else of those opened of late, the newest first.
     compared
         Ids of A and B while these two are compared; empty otherwise.
+    notes
+        What the user wrote about the project.
     """
 
     exemplar: ImageInput | None = None
@@ -230,6 +232,7 @@ class Scene:
     history: History = NO_HISTORY
     opened: tuple[str, ...] = ()
     compared: tuple[int, ...] = ()
+    notes: str = ""
 
     @property
     def selected(self) -> ColumnScene | None:
@@ -251,13 +254,15 @@ def are_same(columns: Sequence[ColumnScene], others: Sequence[ColumnScene]) -> b
 
 
 # Compared by what they are.
-_PARTS = tuple(each.name for each in fields(Scene) if each.name not in ("columns", "probe", "seed", "selected_id"))
+_PARTS = tuple(
+    each.name for each in fields(Scene) if each.name not in ("columns", "notes", "probe", "seed", "selected_id")
+)
 
 
 def same_but_probe(scene: Scene, other: Scene) -> bool:
     """Whether two scenes differ in nothing but the pixel that the user asks about."""
     return (
         are_same(scene.columns, other.columns)
-        and (scene.seed, scene.selected_id) == (other.seed, other.selected_id)
+        and (scene.seed, scene.selected_id, scene.notes) == (other.seed, other.selected_id, other.notes)
         and all(getattr(scene, name) is getattr(other, name) for name in _PARTS)
     )

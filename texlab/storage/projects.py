@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from texlab.state.chosen import Column, Sample, State
+from texlab.state.scene import Past
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import PresetError
 from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn
+from texlab_core.documents.project_history import ProjectPast
 from texlab_core.documents.project_reading import read_project
+from texlab_core.engine.job import job_key
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from texlab.style.pictures import Picture
-    from texlab_core.engine.inputs import ImageInput
+    from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.steps import FloatImage
+
+AnyInput = TypeVar("AnyInput", bound="Input")
 
 __all__ = ["SUFFIX", "OpenedProject", "is_project", "open_project", "project_of"]
 
@@ -38,6 +43,8 @@ class OpenedProject:
         Of finished results, by id, (H, W, 3) uint8.
     measures
         What was known of them: numbers by the id of their measure, by id of the column.
+    histories
+        Earlier results, by id of the column.
     layout
         "explore", "teach", "tune" or "".
     notes
@@ -48,6 +55,7 @@ class OpenedProject:
     selected: int
     pictures: Mapping[int, Picture]
     measures: Mapping[int, Mapping[str, float]]
+    histories: Mapping[int, tuple[Past, ...]]
     layout: str
     notes: tuple[str, ...] = ()
 
@@ -64,6 +72,7 @@ def project_of(
     layout: str,
     *,
     measures: Mapping[int, Mapping[str, float]] | None = None,
+    histories: Mapping[int, Sequence[Past]] | None = None,
     for_student: bool = False,
 ) -> Project:
     """Return the session as a project; runs in a thread.
@@ -78,6 +87,8 @@ def project_of(
         Name of the layout.
     measures
         Numbers about these results by id of the measure, by column id.
+    histories
+        Earlier results of the exemplar in use, by column id.
     for_student
         Names of files lose their folders, so that nothing tells of this computer.
     """
@@ -98,6 +109,7 @@ def project_of(
             seed=column.seed,
             pinned=column.pinned,
             measures=(measures or {}).get(column.id, {}),
+            history=tuple(_put_past(each) for each in (histories or {}).get(column.id, ())),
         )
         for column in state.columns
     )
@@ -111,9 +123,33 @@ def project_of(
         size=state.size,
         chosen=places.index(selected) if selected in places else 0,
         presets=tuple(each for method in used for each in store.presets(method))[:MAX_PRESETS],
+        notes=state.notes,
         layout=layout,
     )
     return _without_folders(project) if for_student else project
+
+
+def _put_past(past: Past) -> ProjectPast:
+    inputs = dict(past.inputs)
+    return ProjectPast(
+        past.method, past.params, past.size, past.seed, past.thumbnail, inputs=inputs, measures=past.measures
+    )
+
+
+def _take_past(past: ProjectPast, exemplar: ImageInput) -> Past:
+    inputs = dict(past.inputs)
+    key = job_key(past.method, {"exemplar": exemplar, **inputs}, past.params, past.size, past.seed)
+    return Past(
+        key,
+        exemplar.sha256,
+        past.method,
+        past.params,
+        tuple(inputs.items()),
+        past.size,
+        past.seed,
+        past.thumbnail,
+        past.measures,
+    )
 
 
 def _source(sample: Sample) -> ImageInput:
@@ -133,11 +169,29 @@ def _source(sample: Sample) -> ImageInput:
 
 
 def _without_folders(project: Project) -> Project:
+    columns = [
+        dataclasses.replace(
+            column,
+            inputs=_all_without_folder(column.inputs),
+            history=[
+                dataclasses.replace(past, inputs=_all_without_folder(past.inputs)) for past in column.history
+            ],
+        )
+        for column in project.columns
+    ]
     exemplar = project.exemplar
-    if exemplar is not None and not exemplar.name.startswith("gallery:"):
-        name = exemplar.name.replace("\\", "/").rpartition("/")[2]
-        exemplar = dataclasses.replace(exemplar, name=name or "exemplar")
-    return dataclasses.replace(project, exemplar=exemplar)
+    named = None if exemplar is None else _without_folder(exemplar, "exemplar")
+    return dataclasses.replace(project, exemplar=named, columns=columns)
+
+
+def _all_without_folder(inputs: Mapping[str, Input]) -> dict[str, Input]:
+    return {role: _without_folder(each, role) for role, each in inputs.items()}
+
+
+def _without_folder(given: AnyInput, otherwise: str) -> AnyInput:
+    if given.name.startswith("gallery:"):
+        return given
+    return dataclasses.replace(given, name=given.name.replace("\\", "/").rpartition("/")[2] or otherwise)
 
 
 def open_project(path: str, first: Callable[[OpenedProject], None] | None = None) -> OpenedProject:
@@ -165,24 +219,27 @@ def _opened(path: str, project: Project, kept: Sequence[str]) -> OpenedProject:
     sample = None
     if project.exemplar is not None:
         sample = Sample(project.exemplar, project.scale, project.crop, levels=project.levels)
-    columns, pictures, measures = [], {}, {}
+    columns, pictures, measures, histories = [], {}, {}, {}
+    used = project.used_exemplar if any(each.history for each in project.columns) else None
     for number, each in enumerate(project.columns, 1):
         inputs = tuple(each.inputs.items())
         columns.append(
             Column(number, each.method, each.params, inputs, each.size, each.title, each.pinned, each.seed)
         )
+        if each.history and used is not None:
+            histories[number] = tuple(_take_past(past, used) for past in each.history)
         if each.result:
             measures[number] = each.measures
             values = read_image(each.result, f"the result of column {number}").values[..., :3]
             pictures[number] = values.repeat(3, axis=2) if values.shape[2] == 1 else values
     size = project.size
-    state = State(sample, tuple(columns), project.seed, size, len(columns) + 1)
+    state = State(sample, tuple(columns), project.seed, size, len(columns) + 1, project.notes)
     names = ", ".join(dict.fromkeys(find_method(each.method).title for each in project.columns))
     said = [f"Opened {path}: {len(columns)} columns ({names})."]
     if kept:
         said.append(f"New presets: {', '.join(kept)}.")
     return OpenedProject(
-        state, project.chosen + 1 if columns else 0, pictures, measures, project.layout, tuple(said)
+        state, project.chosen + 1 if columns else 0, pictures, measures, histories, project.layout, tuple(said)
     )
 
 

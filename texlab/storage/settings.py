@@ -11,6 +11,7 @@ from texlab.storage.kept_exemplar import file_name, has_no_home
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
 from texlab.storage.sessions import writing
+from texlab_core.documents.project import MAX_NOTE
 from texlab_core.engine.job import DEFAULT_SIZE, check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
 from texlab_core.errors import InputError
@@ -162,6 +163,7 @@ def session_to_json(state: State, selected: int) -> dict[str, Any]:
         "seed": state.seed,
         "size": list(state.size),
         "selected": places.index(selected) if selected in places else 0,
+        "notes": state.notes,
     }
 
 
@@ -224,6 +226,12 @@ def _inputs_from_json(saved: Any, method: Method, tell: Callable[[str], None]) -
             log.warning("The input %s of the last session was left out: %s", spec.name, error)
             tell(f"The {spec.name} of {method.title} could not be brought back; the column starts without it.")
     return tuple(inputs)
+
+
+def notes_of(data: Any) -> str:
+    """Return the notes of a saved session, or none."""
+    notes = data.get("notes", "") if isinstance(data, dict) else ""
+    return notes if isinstance(notes, str) and len(notes) <= MAX_NOTE else ""
 
 
 def seed_and_size(data: Any) -> tuple[int, tuple[int, int]]:

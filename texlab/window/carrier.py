@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any, assert_never
 
 from texlab.state.changes import by_hand, sample_of, with_cell, with_cell_column
@@ -14,6 +15,7 @@ from texlab.state.intentions import (
     CopyLesson,
     EditField,
     EditInputs,
+    EditNotes,
     EditParams,
     EditSize,
     FillHoles,
@@ -145,6 +147,10 @@ class Carrier:
                 self._open_failure(name, beside)
             case GoToState(index):
                 session.go_to(index)
+            case EditNotes(text, final):
+                session.apply(dataclasses.replace(session.state, notes=text), "notes", merge="notes")
+                if final:
+                    session.finish_merge("notes")
             case OpenTab(tab, settings):
                 self._open_tab(tab, dict(settings))
             case Tell(sentence, problem):

@@ -180,6 +180,8 @@ class Opener:
                 self._session.select(columns[max(opened.selected - 1, 0)].id)
             for place, picture in opened.pictures.items():
                 self._controller.show_stored(columns[place - 1].id, picture, opened.measures[place])
+            for place, history in opened.histories.items():
+                self._controller.remember(columns[place - 1].id, history)
             self._forget_start(first)
 
         def show_first(opened: OpenedProject) -> None:

@@ -46,9 +46,13 @@ class ProjectDesk:
         """Save the session in a file."""
         session = self._controller.session
         state, selected = session.state, session.selected_id
-        images, measures = {}, {}
+        images, measures, histories = {}, {}, {}
+        exemplar = self._controller.exemplar
         for column in state.columns:
             scene = self._controller.column_scene(column.id)
+            if scene is not None and exemplar is not None:
+                # Those of another exemplar could not be made again.
+                histories[column.id] = [each for each in scene.history if each.exemplar == exemplar.sha256]
             if scene is not None and scene.result is not None and not scene.draft:
                 images[column.id] = scene.result.image
                 measures[column.id] = known_numbers(scene) or {}
@@ -57,7 +61,9 @@ class ProjectDesk:
         def work(task: Task) -> str:
             from texlab_core.documents.project import save_project
 
-            made = project_of(state, selected, images, layout, measures=measures, for_student=for_student)
+            made = project_of(
+                state, selected, images, layout, measures=measures, histories=histories, for_student=for_student
+            )
             save_project(path, made)
             return path
 

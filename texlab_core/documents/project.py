@@ -1,9 +1,9 @@
 """Project files: an exemplar, columns with their inputs and results, presets and notes, in one archive.
 
 A project is a zip archive: ``project.json`` says what there is, ``inputs/`` holds the inputs, each once, and
-``results/`` the pictures of finished columns. It needs nothing beside it, so that it can be moved and given away.
-Where a part of a large picture is used, that part is there too: columns can be shown, and run, before the picture
-has been unpacked.
+``results/`` the pictures of finished columns, ``history/`` small ones of what a column showed before. It needs
+nothing beside it, so that it can be moved and given away. Where a part of a large picture is used, that
+part is there too: columns can be shown, and run, before the picture has been unpacked.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from texlab_core.documents.embedding import embed
+from texlab_core.documents.project_history import encode_thumbnails, history_to_json
 from texlab_core.documents.recipe import known_measures
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
@@ -31,13 +32,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from texlab_core.documents.presets import Preset
+    from texlab_core.documents.project_history import ProjectPast
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.levels import Levels
     from texlab_core.engine.params import Params
 
 FORMAT = "texlab-project"
-# Version 1 lacks the part of the exemplar that is used, and is what is written where it is not wanted.
-VERSION = 2
+# Version 1 lacks the part of the exemplar that is used, 2 earlier results; the least that is needed is written.
+VERSION = 3
 SUFFIX = ".texlab"
 MAX_BYTES = 2**30
 MAX_FILES = 512
@@ -77,6 +79,8 @@ class ProjectColumn:
         Whether it is kept in front.
     measures
         Numbers about the result by the ids of their measures.
+    history
+        Its earlier results, the newest last; the newest 24 are kept.
     """
 
     method: str
@@ -88,6 +92,7 @@ class ProjectColumn:
     seed: int | None = None
     pinned: bool = False
     measures: Mapping[str, float] = field(default_factory=dict)
+    history: Sequence[ProjectPast] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,16 +133,24 @@ class Project:
     layout: str = ""
     levels: Levels | None = None
 
+    @property
+    def used_exemplar(self) -> ImageInput | None:
+        """What is used of the exemplar, as methods get it."""
+        from texlab_core.images.exemplar import as_exemplar
+
+        if self.exemplar is None:
+            return None
+        return as_exemplar(self.exemplar, scale=self.scale, crop=self.crop, levels=self.levels)
+
     def job(self, place: int) -> Job:
         """Return the job of a column; raises ``InputError`` when it cannot work."""
         from texlab_core.engine.sizes import default_size
-        from texlab_core.images.exemplar import as_exemplar
 
         column = self.columns[place]
         inputs = dict(column.inputs)
         method = find_method(column.method)
-        if self.exemplar is not None and any(spec.name == "exemplar" for spec in method.inputs):
-            inputs["exemplar"] = as_exemplar(self.exemplar, scale=self.scale, crop=self.crop, levels=self.levels)
+        if any(spec.name == "exemplar" for spec in method.inputs) and (used := self.used_exemplar) is not None:
+            inputs["exemplar"] = used
         size = column.size or default_size(self.size, method.dimensions)
         seed = self.seed if column.seed is None else column.seed
         return Job(method=column.method, inputs=inputs, params=column.params, size=size, seed=seed)
@@ -165,13 +178,21 @@ def encode_project(project: Project) -> bytes:
         When an input is too large to be kept.
     """
     inputs: dict[str, bytes] = {}
+
+    def put(given: Input) -> str:
+        return _put(given, inputs)
+
     results = {f"results/{place}.png": each.result for place, each in enumerate(project.columns) if each.result}
-    crop = project.crop
+    for place, each in enumerate(project.columns):
+        if each.history:
+            results[f"history/{place}.png"] = encode_thumbnails(each.history)
+    crop, used = project.crop, _used_part(project)
+    has_history = any(each.history for each in project.columns)
     data = {
         "format": FORMAT,
-        "version": VERSION if (used := _used_part(project)) is not None else 1,
+        "version": VERSION if has_history else 1 if used is None else 2,
         "versions": dict(versions()),
-        "exemplar": None if project.exemplar is None else _put(project.exemplar, inputs),
+        "exemplar": None if project.exemplar is None else put(project.exemplar),
         "scale": project.scale,
         "crop": None if crop is None else [crop.top, crop.left, crop.height, crop.width],
         "seed": project.seed,
@@ -181,13 +202,14 @@ def encode_project(project: Project) -> bytes:
                 "title": column.title,
                 "method": column.method,
                 "parameters": column.params.to_json(),
-                "inputs": {role: _put(each, inputs) for role, each in column.inputs.items()},
+                "inputs": {role: put(each) for role, each in column.inputs.items()},
                 "size": None if column.size is None else size_to_json(column.size),
                 "seed": column.seed,
                 "pinned": column.pinned,
                 "measures": known_measures(column.measures),
                 "result": bool(column.result),
             }
+            | ({} if not column.history else {"history": history_to_json(column.history, put)})
             for column in project.columns
         ],
         "chosen": project.chosen,
@@ -196,7 +218,7 @@ def encode_project(project: Project) -> bytes:
         "layout": project.layout,
     } | ({} if project.levels is None else {"levels": project.levels.to_json()})
     if used is not None:
-        data["used"] = _put(used, inputs)
+        data["used"] = put(used)
     _check_room(inputs, results)
     return pack_archive({"project.json": strict_json.dumps(data).encode(), **results, **inputs})
 

@@ -21,6 +21,7 @@ from texlab_core.documents.project import (
     ProjectColumn,
     ProjectError,
 )
+from texlab_core.documents.project_history import history_from_json
 from texlab_core.documents.reading import parse_input
 from texlab_core.documents.recipe import measures_from_json
 from texlab_core.engine.inputs import Crop, ImageInput, Input
@@ -44,11 +45,13 @@ MAX_COLUMNS = 64
 _MAX_TITLE = 200
 _LAYOUTS = ("", "explore", "teach", "tune")
 _NAMES = re.compile(
-    r"project\.json|inputs/[0-9a-f]{64}\.json|inputs/[0-9a-f]{64}-(?:source|pixels|alpha)\.png|results/\d{1,3}\.png"
+    r"project\.json|inputs/[0-9a-f]{64}\.json|inputs/[0-9a-f]{64}-(?:source|pixels|alpha)\.png"
+    r"|(?:results|history)/\d{1,3}\.png"
 )
 _KEYS = ("format", "version", "versions", "exemplar", "scale", "crop", "seed", "size", "columns", "chosen",
          "presets", "notes", "layout", "levels", "used")  # fmt: skip
-_COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "seed", "pinned", "result", "measures")
+_COLUMN_KEYS = ("title", "method", "parameters", "inputs", "size", "seed", "pinned", "result", "measures",
+                "history")  # fmt: skip
 
 
 def read_project(path: str | os.PathLike[str], first: Callable[[Project], None] | None = None) -> Project:
@@ -159,6 +162,9 @@ class _Reader:
             seed=None if seed is None else check_seed(seed),
             pinned=pinned,
             measures=measures_from_json(data.get("measures", {})),
+            history=history_from_json(
+                data.get("history", []), self._files.get(f"history/{place}.png", b""), self._inputs
+            ),
         )
 
     def _inputs(self, data: dict[str, Any], method: Method) -> dict[str, Input]:
