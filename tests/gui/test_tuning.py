@@ -96,6 +96,8 @@ def test_tune_shows_two_columns_and_explore_all_again(qtbot: Any, explorer: Expl
     assert [each for each in ids(explorer) if views[each].isVisible()] == [first, third]
     assert explorer.workspace.exemplar.isVisible()
     assert explorer.tuning.bar.isVisible()
+    # One pixel is asked about in both.
+    assert explorer.controller.scene().compared == (third, first)
     # One of the pair is chosen: nothing moves. Another one: it becomes A.
     explorer.session.select(first)
     wait_idle(qtbot, explorer)
@@ -108,6 +110,7 @@ def test_tune_shows_two_columns_and_explore_all_again(qtbot: Any, explorer: Expl
     qtbot.keyClick(explorer.window, Qt.Key.Key_1, CONTROL)
     assert all(view.isVisible() for view in views.values())
     assert not explorer.tuning.bar.isVisible()
+    assert explorer.controller.scene().compared == ()
     wait_idle(qtbot, explorer)
 
 

@@ -39,6 +39,7 @@ class Side(QWidget):
         self.letter = letter
         self.second = letter == "B"
         self.setObjectName(f"{OWN}side-{letter.lower()}")
+        self.setAccessibleName(f"Explanation, {letter}")
         self.views: dict[int, ExplanationView] = {}
         self.marks: tuple[Mark, ...] = ()
         self.heading = Label()
