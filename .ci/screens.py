@@ -32,8 +32,7 @@ def arrange(explorer, layout: str) -> None:
     actions[f"layout-{layout if layout in ('tune', 'teach') else 'explore'}"].trigger()
     window.strip.set_open(layout != "explore")
     if layout in ("stage", "fill"):
-        window.raise_dock("sweeps" if layout == "stage" else "fill")
-        window.take_stage()
+        window.take_stage("sweeps" if layout == "stage" else "fill")
 
 
 def main(folder: Path) -> int:
