@@ -134,7 +134,7 @@ def test_earlier_results_and_notes_come_back(
 ) -> None:
     first, _ = ids(explorer)
     column = explorer.session.state.column(first)
-    explorer.controller.editing.edit_params(first, column.params.replace(iterations=1), "iterations", final=True)
+    explorer.controller.editing.params(first, column.params.replace(iterations=1), "iterations", final=True)
     wait_idle(qtbot, explorer)
     notes = explorer.hosts["notes"].dock
     explorer.window.raise_dock("notes")
