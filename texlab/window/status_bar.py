@@ -31,6 +31,7 @@ class StatusBar(QStatusBar):
 
     def __init__(self) -> None:
         super().__init__()
+        self.setAccessibleName("Status")
         self.pixel = Label(name="status-pixel")
         self.pixel.setContentsMargins(6, 0, 0, 0)
         self.errand = Label(name="status-errand")
