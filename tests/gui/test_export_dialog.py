@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from mouse import on_screen
 from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QPushButton
 
 from tests.gui.conftest import ids, result_image, wait_idle
 from texlab.window.export_desk import column_items, foreseen
@@ -95,6 +97,66 @@ def test_an_animation(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path:
     press(qtbot, opened)
     with Image.open(tmp_path / "a.webp") as movie:
         assert (movie.n_frames, movie.info["loop"]) == (4, 0)
+
+
+def test_what_is_there_is_replaced_only_when_that_is_said(
+    opened: ExportDialog, qtbot: Any, tmp_path: Path
+) -> None:
+    made = tmp_path / "made"
+    made.mkdir()
+    opened.out.setText(str(made))
+    opened.sizes.setText("16")
+    opened.seeds.setText("5..9")
+    names = opened.names.text().splitlines()
+    for name in names[:4]:
+        (made / name).write_text("mine")
+    run(qtbot, opened)
+    said = f"4 files are there already: {', '.join(names[:3])} and 1 more. Replace, or write elsewhere."
+    qtbot.waitUntil(lambda: opened.message.text() == said)
+    assert opened.run_button.text() == "Replace"
+    assert sorted(each.name for each in made.iterdir()) == sorted(names[:4])
+    # Another edit, another question.
+    opened.seeds.setText("6")
+    assert (opened.run_button.text(), opened.message.text()) == ("Export", "")
+    run(qtbot, opened)
+    qtbot.waitUntil(lambda: opened.message.text().startswith(f"One file is there already: {names[1]}."))
+    press(qtbot, opened)
+    assert read_recipe(made / names[1]).seed == 6
+    assert (made / names[0]).read_text() == "mine"
+    assert opened.run_button.text() == "Export"
+    # It would replace what it has just written.
+    run(qtbot, opened)
+    qtbot.waitUntil(lambda: opened.run_button.text() == "Replace")
+
+
+def test_what_the_file_dialog_has_asked_about_is_not_asked_again(
+    opened: ExportDialog, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.svg"
+    path.write_text("mine")
+    monkeypatch.setattr("texlab.window.export_dialog.QFileDialog.getSaveFileName", lambda *_: (str(path), ""))
+    opened.kind.setCurrentIndex(1)
+    opened.sizes.setText("16")
+    qtbot.mouseClick(opened.findChild(QPushButton, "export-out-choose"), Qt.MouseButton.LeftButton)
+    press(qtbot, opened)
+    assert path.read_text().startswith("<")
+
+
+def test_a_growth_says_how_many_pictures_it_has(opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    opened.kind.setCurrentIndex(2)
+    opened.out.setText(str(tmp_path / "frames"))
+    opened.frames.setValue(40)
+    press(qtbot, opened)
+    pictures = [read_image(each, "a").values for each in sorted((tmp_path / "frames").iterdir())]
+    assert len(pictures) == 40
+    shown = 1 + sum(not np.array_equal(one, other) for one, other in pairwise(pictures))
+    assert 1 < shown < 40
+    assert opened.message.text().endswith(
+        f"Its 40 frames show {shown} different pictures: a run of this method shows no more."
+    )
+    # Frames that are there already are told, too.
+    run(qtbot, opened)
+    qtbot.waitUntil(lambda: opened.message.text().startswith("40 files are there already: frame-0001.png, "))
 
 
 def test_what_fails_is_said_in_the_dialog(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:

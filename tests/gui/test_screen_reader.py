@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractItemView,
     QAbstractScrollArea,
+    QAbstractSpinBox,
     QApplication,
     QComboBox,
     QDialog,
@@ -31,6 +32,7 @@ from tests.gui.conftest import ids, make_everything, wait_idle
 from texlab.columns.history_popup import HistoryPopup
 from texlab.columns.numbers_popup import NumbersPopup
 from texlab.presets.dialog import PresetDialog
+from texlab.widgets.calm_wheel import CalmWheel
 from texlab.widgets.slider import Slider
 from texlab.window.batch_dialog import BatchDialog
 from texlab.window.export_dialog import ExportDialog
@@ -90,6 +92,14 @@ def test_every_part_of_the_window_has_a_name(explorer: Explorer) -> None:
     found = [*named(explorer.window)]
     assert len(found) > 200
     assert not nameless(explorer.window), "\n".join(nameless(explorer.window))
+    # The wheel gives nothing the keyboard, and changes nothing on its way.
+    boxes = [
+        each for kind in (QComboBox, QAbstractSpinBox, QSlider) for each in explorer.window.findChildren(kind)
+    ]
+    assert len(boxes) > 80
+    assert [each.objectName() for each in boxes if not isinstance(each, CalmWheel)] == []
+    calm = Qt.FocusPolicy.StrongFocus
+    assert [each.objectName() for each in boxes if each.focusPolicy() & ~calm] == []
 
 
 def all_kinds(kind: type[QDialog] = QDialog) -> set[type[QDialog]]:

@@ -9,7 +9,6 @@ from PySide6.QtCore import QPointF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QFormLayout,
     QFrame,
     QHBoxLayout,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.inputs import Crop
@@ -152,7 +152,7 @@ class ExemplarPanel(QFrame):
         set_tip(self.black, "What becomes black, 0 to 1")
         set_tip(self.white, "What becomes white, 0 to 1")
         set_tip(self.gamma, "Above 1 the middle becomes brighter")
-        self.use = QComboBox()
+        self.use = ChoiceBox()
         self.use.setObjectName("levels-use")
         self.use.setAccessibleName("What the levels are for")
         self.use.addItem("The methods see them, recipes have them", False)

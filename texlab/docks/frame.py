@@ -22,6 +22,7 @@ from texlab.docks.recent import Recent, Same
 from texlab.state.intentions import ShowStage, TakePicture
 from texlab.style.text_size import is_teaching
 from texlab.style.theme import DARK, LIGHT
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.once import Once
@@ -304,7 +305,7 @@ class FramedDock(Dock):
         self, name: str, label: str, tip: str, items: Iterable[tuple[str, Any]], changed: Callable[[], Any]
     ) -> QComboBox:
         """Add a list of (text, value); ``changed`` is called when the user chooses."""
-        box = QComboBox()
+        box = ChoiceBox()
         box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         for text, value in items:
             box.addItem(text, value)

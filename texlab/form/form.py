@@ -7,17 +7,14 @@ import time
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
+from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QGridLayout,
-    QSlider,
     QToolButton,
     QWidget,
 )
 
 from texlab.form.knobs import ChoiceKnob, KnobWidget, NumberKnob, SwitchKnob, editor_of
-from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.params import describe
 from texlab_core.errors import ParamError
@@ -42,17 +39,6 @@ def tooltip(field: Field) -> str:
     if knob.source:
         lines.append(knob.source)
     return "\n".join(lines)
-
-
-class WheelGuard(QObject):
-    """Lets the wheel scroll the panel unless the control under it has the focus."""
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Pass wheel events on to the panel."""
-        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
-            event.ignore()
-            return True
-        return super().eventFilter(watched, event)
 
 
 class ParameterForm(QWidget):
@@ -95,7 +81,6 @@ class ParameterForm(QWidget):
         self._error.setProperty("role", "error")
         self._error.setWordWrap(True)
         self._error.hide()
-        self._guard = WheelGuard(self)
         self._layout = QGridLayout(self)
         self._layout.setContentsMargins(8, 4, 8, 8)
         self._layout.setVerticalSpacing(3)
@@ -180,10 +165,6 @@ class ParameterForm(QWidget):
             return
         knob.setObjectName(f"knob-{field.name}")
         set_tip(knob, tooltip(field))
-        for child in knob.findChildren(QWidget):
-            if isinstance(child, QSlider | WholeBox | NumberBox | QComboBox):
-                child.installEventFilter(self._guard)
-                child.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         label = Label(field.label)
         set_tip(label, tooltip(field))
         label.setBuddy(knob)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QGridLayout,
     QSizePolicy,
     QSlider,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from texlab.form.scales import Scale, box_step, decimals
 from texlab.style.text_size import grow_with_text
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import tip_text
 from texlab.widgets.settling import Settling
@@ -188,7 +188,7 @@ class ChoiceKnob(KnobWidget):
     def __init__(self, field: Field, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._choices = field.choices
-        self.box = QComboBox()
+        self.box = ChoiceBox()
         self.box.setObjectName(f"choice-{field.name}")
         self.box.setAccessibleName(field.label)
         for place, choice in enumerate(field.choices):

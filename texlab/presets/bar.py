@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
 
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.plain import set_tip, tip_text
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class PresetBar(QWidget):
         self.setAccessibleName("Presets")
         self._presets: list[Preset] = []
         self._own: set[tuple[str, str]] = set()
-        self.box = QComboBox()
+        self.box = ChoiceBox()
         self.box.setObjectName("preset-box")
         self.box.setAccessibleName("Presets of this method")
         set_tip(self.box, "Take the parameters of a preset")

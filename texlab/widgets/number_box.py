@@ -9,6 +9,7 @@ from PySide6.QtGui import QValidator
 from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QSpinBox
 
 from texlab.style.numbers import parse_number
+from texlab.widgets.calm_wheel import CalmWheel
 
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 _Read = tuple[QValidator.State, str, int]
 
 
-def _prepare(box: QSpinBox | QDoubleSpinBox) -> None:
+def _prepare(box: NumberBox | WholeBox) -> None:
+    box.keep_wheel_calm()
     locale = QLocale(QLocale.Language.C)
     locale.setNumberOptions(QLocale.NumberOption.OmitGroupSeparator)
     box.setLocale(locale)
@@ -43,7 +45,7 @@ def _shows(box: QSpinBox | QDoubleSpinBox, written: str) -> bool:
     return box.text() == f"{box.prefix()}{written}{box.suffix()}"
 
 
-class NumberBox(QDoubleSpinBox):
+class NumberBox(CalmWheel, QDoubleSpinBox):
     """A number box that takes 0.25 and 0,25 alike, whatever the language of the machine.
 
     What is no number, or lies outside the range, can be typed but is not taken: the box goes back to its value.
@@ -97,7 +99,7 @@ class ShareBox(NumberBox):
         return value if factor != bare or (value < 1 and "%" not in factor) else value / 100
 
 
-class WholeBox(QSpinBox):
+class WholeBox(CalmWheel, QSpinBox):
     """A box for whole numbers; what is none, or lies outside the range, is not taken."""
 
     def __init__(self, parent: QWidget | None = None) -> None:

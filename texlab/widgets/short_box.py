@@ -5,16 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QSizePolicy, QStyle, QStyleOptionComboBox, QStylePainter
+from PySide6.QtWidgets import QSizePolicy, QStyle, QStyleOptionComboBox, QStylePainter
 
 from texlab.style.text_size import is_teaching, whole_words
+from texlab.widgets.calm_wheel import ChoiceBox
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEvent
     from PySide6.QtWidgets import QWidget
 
 
-class ShortBox(QComboBox):
+class ShortBox(ChoiceBox):
     """Shortens what is chosen to the room there is, with an ellipsis; the list keeps its full width."""
 
     def __init__(self, parent: QWidget | None = None) -> None:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSlider
 
+from texlab.widgets.calm_wheel import CalmWheel
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from PySide6.QtWidgets import QAbstractSlider, QWidget
 
 
-class Slider(QSlider):
+class Slider(CalmWheel, QSlider):
     """A horizontal slider whose accessible name ends with its value: "iterations: 5".
 
     Parameters
@@ -30,6 +32,7 @@ class Slider(QSlider):
 
     def __init__(self, title: str, says: Callable[[int], str], parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
+        self.keep_wheel_calm()
         self.title = title
         # Who owns a slider would otherwise own itself, and live on when it is let go.
         self._says = weakref.WeakMethod(says) if inspect.ismethod(says) else lambda: says

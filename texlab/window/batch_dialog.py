@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QPlainTextEdit
+from PySide6.QtWidgets import QFileDialog, QLineEdit, QPlainTextEdit
 
 from texlab.style.numbers import duration
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.number_box import WholeBox
 from texlab.window.run_dialog import RunDialog, with_text
 
@@ -68,7 +69,7 @@ class BatchDialog(RunDialog):
         self.inputs.setPlaceholderText("one on each line: a file, a folder, in/*.png, gallery:structured")
         self.inputs.setTabChangesFocus(True)
         self.inputs.setFixedHeight(5 * self.fontMetrics().lineSpacing())
-        self.methods = QComboBox()
+        self.methods = ChoiceBox()
         self.methods.addItems(["the chosen column's method and parameters", "those of every column"])
         self.seeds = WholeBox()
         self.seeds.setRange(1, MOST_SEEDS)

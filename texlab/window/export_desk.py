@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,9 @@ from texlab_core.sheets.export_names import safe_part
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from texlab.runs.controller import Controller
     from texlab.runs.worker import Task
     from texlab.storage.settings import Settings
@@ -27,6 +32,26 @@ if TYPE_CHECKING:
     from texlab_core.images.formats.writing import Bits
     from texlab_core.sheets.export import Export, Item
     from texlab_core.sheets.figure import Figure
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a request.
+
+    Parameters
+    ----------
+    written
+        The files.
+    there
+        Files that would be replaced, and nobody has said that they may be: nothing was written then.
+    note
+        What there is to say about what was written, one sentence.
+    """
+
+    written: tuple[Path, ...] = ()
+    there: tuple[Path, ...] = ()
+    note: str = ""
+
 
 _BITS: dict[str, Bits | None] = {"": None, "8": 8, "16": 16, "float": "float"}
 
@@ -92,12 +117,15 @@ class ExportDesk(RunDesk):
         self._settings.values["save-folder"] = folder
         self._submit(dialog, lambda task: carry_out(asked, items, task))
 
-    def _done(self, written: tuple[Path, ...]) -> None:
+    def _done(self, outcome: Outcome) -> None:
         assert self.dialog is not None
-        self.written = written
+        if outcome.there:
+            self.dialog.ask_to_replace([path.name for path in outcome.there])
+            return
+        written = self.written = outcome.written
         self.dialog.show_share(1.0)
         what = str(written[0]) if len(written) == 1 else f"{len(written)} files in {written[0].parent}"
-        self.dialog.show_idle(f"Written: {what}.", written=True)
+        self.dialog.show_idle(f"Written: {what}. {outcome.note}".rstrip(), written=True)
 
     def _show_folder(self) -> None:
         if self.written:
@@ -209,8 +237,33 @@ def _look(asked: ExportRequest) -> Figure:
     return Figure(width=width, dpi=float(asked.dpi), columns=asked.across or None)
 
 
-def carry_out(asked: ExportRequest, items: Sequence[Item], task: Task) -> tuple[Path, ...]:
-    """Carry a request out in a worker's thread and return what was written; raises as the core does."""
+def _there(asked: ExportRequest, items: Sequence[Item]) -> tuple[Path, ...]:
+    """Return the files that a request would replace."""
+    from texlab_core.sheets.export import planned
+    from texlab_core.sheets.export_animation import is_sequence
+
+    out = Path(asked.out)
+    if asked.kind == "files":
+        targets = planned(_export(asked), _selected(asked, items))
+    elif asked.kind == "animation" and is_sequence(out):
+        return tuple(sorted(out.glob("frame-*.png")))
+    else:
+        targets = (out,)
+    return tuple(path for path in targets if path.exists())
+
+
+def _stillness(frames: Sequence[NDArray[np.uint8]]) -> str:
+    """Say how many pictures a growth really has, where that is fewer than its frames."""
+    import numpy as np
+
+    shown = 1 + sum(one is not other and not np.array_equal(one, other) for one, other in pairwise(frames))
+    if shown == len(frames):
+        return ""
+    return f"Its {len(frames)} frames show {shown} different pictures: a run of this method shows no more."
+
+
+def carry_out(asked: ExportRequest, items: Sequence[Item], task: Task) -> Outcome:
+    """Carry a request out in a worker's thread; raises as the core does."""
     from texlab_core.files.whole import check_target, write_whole
     from texlab_core.sheets.export import export_tiles, run_export, run_items
     from texlab_core.sheets.export_animation import (
@@ -226,16 +279,20 @@ def carry_out(asked: ExportRequest, items: Sequence[Item], task: Task) -> tuple[
             task.progress(share)
 
     stop = task.should_stop
+    if not asked.replace and (there := _there(asked, items)):
+        return Outcome(there=there)
     if asked.kind == "files":
-        return run_export(_export(asked), _selected(asked, items), on_progress=tell, should_stop=stop)
+        selected = _selected(asked, items)
+        return Outcome(run_export(_export(asked), selected, on_progress=tell, should_stop=stop))
     if asked.kind == "figure":
         out = check_target(asked.out)
         selected = _selected(asked, items)
         results = run_items(selected, on_progress=tell, should_stop=stop)
         page = figure_page(export_tiles(zip(selected, results, strict=True)), _look(asked))
         write_whole(out, encode_figure(out, page))
-        return (out,)
+        return Outcome((out,))
     animation = animation_of(asked.motion, items[0].job, frames=asked.frames, rate=float(asked.rate))
     check_animation_target(asked.out, animation)
     drawn, result = draw_frames(items[0].job, animation, on_progress=tell, should_stop=stop)
-    return write_animation(asked.out, drawn, result, rate=animation.rate, should_stop=stop)
+    written = write_animation(asked.out, drawn, result, rate=animation.rate, should_stop=stop)
+    return Outcome(written, note=_stillness(drawn) if animation.of == "growth" else "")

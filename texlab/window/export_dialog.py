@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QFileDialog, QLineEdit, QWidget
 
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label
 from texlab.widgets.tick_list import TickList
@@ -39,6 +40,7 @@ BITS = {"as the exemplar": "", "8 bits": "8", "16 bits": "16", "floats": "float"
 RECIPES = {"inside, where the format holds it": "inside", "beside each file": "beside", "nowhere": "none"}
 # Where a figure and an animation go until the user says otherwise.
 _ENDINGS: dict[Kind, str] = {"figure": ".pdf", "animation": ".webp"}
+_NAMED = 3
 _SHOWN = 4
 
 
@@ -62,6 +64,8 @@ class ExportRequest:
         Of a figure: cm, pixels per inch, pictures in a row (0: its own).
     motion, frames, rate
         Of an animation.
+    replace
+        Files that are there already may be replaced.
     """
 
     kind: Kind
@@ -80,6 +84,7 @@ class ExportRequest:
     motion: str = "growth"
     frames: int = 60
     rate: int = 12
+    replace: bool = False
 
 
 class ExportDialog(RunDialog):
@@ -96,6 +101,9 @@ class ExportDialog(RunDialog):
         super().__init__("export", "Export", "Making the results ...", 460, parent)
         self._written = False
         self._sound = False
+        self._replaces = False
+        # The file dialog has asked about this one.
+        self._agreed = ""
         self._outs: dict[Kind, str] = {}
         self._proposed: dict[Kind, str] = {}
         self._shown_kind: Kind = "files"
@@ -110,7 +118,7 @@ class ExportDialog(RunDialog):
         self.width_cm = QLineEdit("17")
         self.dpi = _number(36, 2400, 300)
         self.across = _number(0, 64, 0, "its own")
-        self.motion = QComboBox()
+        self.motion = ChoiceBox()
         self.motion.setEditable(True)
         self.motion.addItems(["growth", "iterations", "seed=1:12:12"])
         self.frames, self.rate = _number(2, 720, 60), _number(1, 50, 12)
@@ -156,7 +164,13 @@ class ExportDialog(RunDialog):
                 "growth, iterations, or a knob: alpha=0.05:0.3:24",
                 ("animation",),
             ),
-            ("Frames", self.frames, "frames", "Of a growth", ("animation",)),
+            (
+                "Frames",
+                self.frames,
+                "frames",
+                "Of a growth, at most: a method that works level by level shows one picture a level, and keeps it",
+                ("animation",),
+            ),
             ("Frames a second", self.rate, "rate", "How fast it goes", ("animation",)),
         )
 
@@ -242,9 +256,27 @@ class ExportDialog(RunDialog):
             motion=self.motion.currentText().strip(),
             frames=self.frames.value(),
             rate=self.rate.value(),
+            replace=self._replaces or (bool(self._agreed) and self.out.text() == self._agreed),
         )
 
+    def ask_to_replace(self, names: Sequence[str]) -> None:
+        """Say which files are there already; pressing the button once more replaces them."""
+        self._replaces = True
+        self.run_button.setText("Replace")
+        some = f"{len(names)} files are" if len(names) > 1 else "One file is"
+        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        self.show_idle(f"{some} there already: {', '.join(names[:_NAMED])}{more}. Replace, or write elsewhere.")
+        self.bar.setValue(0)
+
+    def _ask_again(self) -> None:
+        """Ask anew before anything is replaced."""
+        self._replaces = False
+        self.run_button.setText("Export")
+
     def _edited(self) -> None:
+        if self._replaces:
+            self._ask_again()
+            self.message.setText("")
         self.edited.emit(self.request())
 
     def show_names(self, names: Sequence[str]) -> None:
@@ -263,6 +295,9 @@ class ExportDialog(RunDialog):
     def show_idle(self, sentence: str, *, written: bool = False) -> None:
         """Show that nothing runs, and why not, or what came of it."""
         self._written = self._written or written
+        if written:
+            self._ask_again()
+            self._agreed = ""
         super().show_idle(sentence)
 
     def show_running(self) -> None:
@@ -285,11 +320,12 @@ class ExportDialog(RunDialog):
             "figure": "PDF (*.pdf);;SVG (*.svg)",
             "animation": "WebP (*.webp);;GIF (*.gif);;APNG (*.apng);;MP4 (*.mp4)",
         }[kind]
-        with_text(self.out, QFileDialog.getSaveFileName(self, "Export", self.out.text(), kinds)[0])
+        self._agreed = QFileDialog.getSaveFileName(self, "Export", self.out.text(), kinds)[0]
+        with_text(self.out, self._agreed)
 
 
 def _box(texts: object) -> QComboBox:
-    box = QComboBox()
+    box = ChoiceBox()
     box.addItems([str(text) for text in texts])  # type: ignore[attr-defined]
     return box
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QDialogButtonBox, QFormLayout, QWidget
+from PySide6.QtWidgets import QDialogButtonBox, QFormLayout, QWidget
 
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.tick_list import TickList
@@ -76,7 +77,7 @@ class PopoutSetup(QWidget):
         form = QFormLayout(self)
         self.columns = TickList(7)
         self.columns.itemChanged.connect(self.edit)
-        self.share = QComboBox()
+        self.share = ChoiceBox()
         for text, value in SHARES.items():
             self.share.addItem(text, value)
         self.repeats, self.feather, self.seed = WholeBox(), WholeBox(), WholeBox()

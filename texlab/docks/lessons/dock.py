@@ -33,6 +33,7 @@ from texlab.state.intentions import (
     UndoLesson,
 )
 from texlab.state.lesson_scene import NO_LESSON
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import set_tip
 
@@ -66,7 +67,7 @@ class LessonsDock(FramedDock):
         self._lesson = NO_LESSON
         self._is_folded = self._edits_copy = False
         self._shown: LessonStep | None = None
-        self.jump = QComboBox()
+        self.jump = ChoiceBox()
         self.jump.setMinimumContentsLength(24)
         self.jump.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.jump.activated.connect(lambda place: self.intention.emit(GoToStep(place)))

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QGridLayout,
     QHBoxLayout,
     QLineEdit,
@@ -21,6 +20,7 @@ from texlab.docks.sweeps.textures import TextureChoice
 from texlab.form.scales import box_step, decimals
 from texlab.style.numbers import parse_list
 from texlab.style.text_size import grow_with_text
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import NumberBox, WholeBox
 from texlab.widgets.plain import Label, set_tip, tip_text
@@ -91,9 +91,9 @@ class AxisEditor(QWidget):
         self._optional = optional
         self._params: type[Params] | None = None
         self._fields: dict[str, Field] = {}
-        self.knob = QComboBox()
+        self.knob = ChoiceBox()
         self.knob.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.spacing = QComboBox()
+        self.spacing = ChoiceBox()
         for place, (value, text, tip) in enumerate(SPACINGS):
             self.spacing.addItem(text, value)
             self.spacing.setItemData(place, tip_text(tip), Qt.ItemDataRole.ToolTipRole)

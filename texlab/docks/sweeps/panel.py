@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QComboBox, QGridLayout, QScrollArea, QSizePolicy, 
 from texlab.docks.sweeps.axis import AxisChoice, AxisEditor
 from texlab.state.sweeps import SweepPlan
 from texlab.style.text_size import grow_with_text
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.plain import Label, set_tip, tip_text
 from texlab_core.errors import InputError
 from texlab_core.sheets.sweep import show
@@ -44,7 +45,7 @@ class SweepPanel(QScrollArea):
         self._recipe: SweepRecipe | None = None
         # Name of a ready-made sweep that is to be chosen as soon as it is offered.
         self._wanted = ""
-        self.ready_box, self.base_box, self.side_box = QComboBox(), QComboBox(), QComboBox()
+        self.ready_box, self.base_box, self.side_box = ChoiceBox(), ChoiceBox(), ChoiceBox()
         for side in SIDES:
             self.side_box.addItem(f"{side} x {side}", side)
         self.side_box.addItem("as the columns", None)

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QFileDialog, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.docks.frame import replace_items
 from texlab.state.sweeps import Textures
+from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.errors import ParamError
 from texlab_core.images.formats.kinds import READABLE_SUFFIXES
@@ -39,7 +40,7 @@ class TextureChoice(QWidget):
         self.setAccessibleName(f"{title}: textures")
         self._opened: tuple[str, ...] = ()
         self._chosen: dict[str, tuple[str, ...]] = {FOLDER: (), FILES: ()}
-        self.box = QComboBox()
+        self.box = ChoiceBox()
         self.box.setObjectName(f"{name}-textures")
         self.box.setAccessibleName(f"{title}: textures")
         self.box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
