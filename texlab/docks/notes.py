@@ -55,6 +55,7 @@ class NotesDock(FramedDock):
 
     def show_scene(self, scene: Scene) -> None:
         """Write the notes into the field, but for the words that are being typed."""
+        super().show_scene(scene)
         if scene.notes != self._shown and scene.lesson.lesson is None:
             self._shown = scene.notes
             self.settling.stop()
