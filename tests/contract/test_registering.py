@@ -11,7 +11,7 @@ import pytest
 
 import texlab_core.methods
 from texlab_core.engine.params import Knob, Params, describe
-from texlab_core.engine.registry import methods
+from texlab_core.engine.registry import failures, methods
 
 
 def declaring_modules() -> list[str]:
@@ -30,6 +30,9 @@ def declaring_modules() -> list[str]:
 @pytest.mark.parametrize("name", declaring_modules())
 def test_the_file_registers_a_method(name: str) -> None:
     homes = {method.synthesize.__module__ for method in methods().values()}
+    # One that could not be loaded says why itself.
+    broken = [each.sentence for each in failures() if f"{name}.".startswith(f"{each.source.module}.")]
+    assert not broken, " ".join(broken)
     assert name in homes, f"{name} registers no method: call engine.registry.register(Method(...)) in it."
 
 
