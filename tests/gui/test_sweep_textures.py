@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtGui import QContextMenuEvent
+from PySide6.QtWidgets import QApplication, QFileDialog, QMenu
 from sweep_bench import LEFT, PATIENCE_MS, choose, click_cell, complete, make_bench, set_range, start  # noqa: F401
 
 from tests.stub_method import StubParams, stub  # noqa: F401
 from texlab.docks.sweeps.textures import ITEMS
 from texlab.state.chosen import Column
+from texlab.storage.projects import is_handed_on, open_project
 from texlab.style.pictures import to_picture
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.pair_layer import difference_picture
@@ -71,7 +75,29 @@ def test_a_folder_of_textures_becomes_a_grid(qtbot, bench, photos):
     canvas.setFocus()
     qtbot.keyClick(canvas, Qt.Key.Key_End)
     assert "Click to take the texture and parameters." in canvas.accessibleDescription()
+    # All columns share their exemplar: a cell of another one opens in a window of its own.
     qtbot.keyClick(canvas, Qt.Key.Key_N)
+    qtbot.waitUntil(lambda: bool(here.asked["open_window"]), timeout=PATIENCE_MS)
+    assert session.undo_text is None
+    (path,) = here.asked["open_window"]
+    assert is_handed_on(path)
+    handed = open_project(path)
+    assert not Path(path).exists()
+    assert not Path(path).parent.exists()
+    job = dock.cells[5].cell.job
+    assert handed.state.sample.source.sha256 == job.inputs["exemplar"].sha256
+    assert [(each.method, each.params) for each in handed.state.columns] == [(job.method, job.params)]
+    assert handed.state.seed == job.seed
+    # The menu offers both, and says what the other does.
+    QApplication.sendEvent(
+        canvas, QContextMenuEvent(QContextMenuEvent.Reason.Keyboard, QPoint(), canvas.mapToGlobal(QPoint()))
+    )
+    menu = canvas.findChild(QMenu, "sweeps-cell-menu")
+    names = [each.text().replace("&", "") for each in menu.actions()]
+    assert names[1] == "Open in a new window\tN"
+    assert names[2] == "Open as a column here: all columns take its texture"
+    menu.actions()[2].trigger()
+    menu.close()
     assert session.undo_text == "column of a sweep"
     assert [each.params.border for each in session.state.columns] == ["reflect", "wrap"]
     assert session.state.sample.source.name == "two.png"

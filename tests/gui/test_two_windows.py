@@ -107,11 +107,13 @@ def test_another_window_is_another_process_of_the_same_program(
     started: list[tuple[str, list[str]]] = []
     monkeypatch.setattr(QProcess, "startDetached", lambda *given: (started.append(given), (True, 1))[1])
     explorer.window.actions_by_name["another-window"].trigger()
-    assert started == [(sys.executable, ["-m", "texlab", "gui"])]
+    explorer.handlers.open_another_window("cell.texlab")
+    ours = ["-m", "texlab", "gui"]
+    assert started == [(sys.executable, ours), (sys.executable, [*ours, "cell.texlab"])]
     monkeypatch.setattr(sys, "frozen", True, raising=False)
     monkeypatch.setattr(QProcess, "startDetached", lambda *given: (started.append(given), (False, 0))[1])
     explorer.window.actions_by_name["another-window"].trigger()
-    assert started[1] == (sys.executable, ["gui"])
+    assert started[2] == (sys.executable, ["gui"])
     assert "could not be started" in explorer.window.message_bar.label.text()
 
 

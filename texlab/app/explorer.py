@@ -138,6 +138,7 @@ class Explorer(QObject):
             self._open_tab,
             window.take_stage,
             self.presenter.light_up,
+            self.handlers.open_another_window,
         )
         self._closed = False
         self._memory = QTimer(self)

@@ -226,6 +226,18 @@ def with_cell_column(state: State, cell: Cell, after: int) -> tuple[State, int]:
     return dataclasses.replace(state, columns=columns, next_id=state.next_id + 1), column.id
 
 
+def cell_alone(state: State, cell: Cell) -> State:
+    """Return a state with nothing but a cell's texture and a column with what made it, all but the size."""
+    from texlab_core.engine.inputs import ImageInput
+
+    job = cell.job
+    texture = job.inputs["exemplar"]
+    assert isinstance(texture, ImageInput)
+    inputs = tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
+    column = Column(1, job.method, job.params, inputs)
+    return State(sample_as_used(texture), (column,), job.seed, state.size, 2)
+
+
 def _with_texture_of(state: State, cell: Cell) -> State:
     """Return the state with the exemplar of a cell of a grid over many textures."""
     from texlab_core.engine.inputs import ImageInput

@@ -305,6 +305,13 @@ class CellAsColumn:
 
 
 @dataclass(frozen=True)
+class CellInWindow:
+    """Open a cell of another texture in a window of its own: all columns of this one share their exemplar."""
+
+    cell: Cell
+
+
+@dataclass(frozen=True)
 class OpenLesson:
     """Give a lesson: one that comes with the program, or the name of one of the user's own."""
 
@@ -390,6 +397,7 @@ Intention = (
     | StopTuning
     | TakeCell
     | CellAsColumn
+    | CellInWindow
     | OpenLesson
     | GoToStep
     | LeaveLesson

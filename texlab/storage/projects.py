@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from texlab.state.chosen import Column, Sample, State
@@ -11,11 +14,12 @@ from texlab.state.scene import Past
 from texlab.storage.paths import config_dir
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import PresetError
-from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn
+from texlab_core.documents.project import MAX_PRESETS, SUFFIX, Project, ProjectColumn, save_project
 from texlab_core.documents.project_history import ProjectPast
 from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.job import job_key
 from texlab_core.engine.registry import find_method
+from texlab_core.sheets.export_names import safe_part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,6 +27,9 @@ if TYPE_CHECKING:
     from texlab.style.pictures import Picture
     from texlab_core.engine.inputs import ImageInput, Input
     from texlab_core.engine.steps import FloatImage
+
+# Of the folder of a project that one window leaves for another.
+HANDED_ON = "texlab-window-"
 
 AnyInput = TypeVar("AnyInput", bound="Input")
 
@@ -210,7 +217,29 @@ def open_project(path: str, first: Callable[[OpenedProject], None] | None = None
         One sentence when it is none, or damaged.
     """
     project = read_project(path, None if first is None else lambda part: first(_opened(path, part, ())))
+    if is_handed_on(path):
+        _take_away(path)
     return _opened(path, project, _keep_presets(project))
+
+
+def write_for_window(state: State) -> str:
+    """Write a session for a window that is about to be opened, which removes it; return where it is."""
+    name = "cell" if state.sample is None else Path(state.sample.source.name.removeprefix("gallery:")).stem
+    path = Path(tempfile.mkdtemp(prefix=HANDED_ON)) / f"{safe_part(name)}{SUFFIX}"
+    save_project(path, project_of(state, 1, {}, ""))
+    return str(path)
+
+
+def is_handed_on(path: str) -> bool:
+    """Return whether a project file was written by :func:`write_for_window`."""
+    folder = Path(path).parent
+    return folder.name.startswith(HANDED_ON) and folder.parent == Path(tempfile.gettempdir())
+
+
+def _take_away(path: str) -> None:
+    with contextlib.suppress(OSError):
+        Path(path).unlink()
+        Path(path).parent.rmdir()
 
 
 def _opened(path: str, project: Project, kept: Sequence[str]) -> OpenedProject:

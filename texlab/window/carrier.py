@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, Any, assert_never
 
-from texlab.state.changes import by_hand, sample_of, with_cell, with_cell_column
+from texlab.state.changes import by_hand, cell_alone, sample_of, with_cell, with_cell_column
 from texlab.state.intentions import (
     AskOnce,
     CellAsColumn,
+    CellInWindow,
     ChangeLesson,
     ChangeMethod,
     ChooseColumn,
@@ -46,6 +47,7 @@ from texlab.state.intentions import (
     Tell,
     UndoLesson,
 )
+from texlab.storage.projects import write_for_window
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:
@@ -81,6 +83,8 @@ class Carrier:
         Lets the dock of this name take the whole stage, or give it back.
     light_up
         Lets pixels of the pictures light up.
+    open_window
+        Opens a project file in a window of its own.
     """
 
     def __init__(
@@ -95,6 +99,7 @@ class Carrier:
         open_tab: Callable[[str, Mapping[str, Any]], None],
         take_stage: Callable[[str], None] = lambda _: None,
         light_up: Callable[[tuple[Lit, ...]], None] = lambda _: None,
+        open_window: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._controller = controller
         self._session = controller.session
@@ -107,6 +112,7 @@ class Carrier:
         self._open_tab = open_tab
         self._take_stage = take_stage
         self._light_up = light_up
+        self._open_window = open_window
 
     def carry_out(self, intention: Intention) -> None:
         """Do what is intended."""
@@ -183,6 +189,9 @@ class Carrier:
                 state, column_id = with_cell_column(session.state, cell, after)
                 session.apply(state, "column of a sweep")
                 self._choose(column_id)
+            case CellInWindow(cell):
+                state = cell_alone(session.state, cell)
+                controller.once("cell-window", lambda task: write_for_window(state), self._open_window)
             case _:
                 assert_never(intention)
 

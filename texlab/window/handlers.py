@@ -118,7 +118,7 @@ class Handlers(QObject):
             "export-many": self.exports.open,
             "save-project": self.projects.save,
             "student-copy": partial(self.projects.save, for_student=True),
-            "another-window": self.open_another_window,
+            "another-window": lambda: self.open_another_window(),
             "forget-results": self.forget_results,
             "quit": self._window.close,
             "undo": session.undo,
@@ -174,10 +174,11 @@ class Handlers(QObject):
 
         self._controller.once("forget", lambda task: kept.forget(), done)
 
-    def open_another_window(self) -> None:
-        """Start the program once more, which takes a session that no window has."""
+    def open_another_window(self, source: str = "") -> None:
+        """Start the program once more, which takes a session that no window has, and opens a source in it."""
         frozen = getattr(sys, "frozen", False)
-        started, _ = QProcess.startDetached(sys.executable, ["gui"] if frozen else ["-m", "texlab", "gui"])
+        command = ["gui"] if frozen else ["-m", "texlab", "gui"]
+        started, _ = QProcess.startDetached(sys.executable, [*command, source] if source else command)
         if not started:
             self._window.message_bar.tell("Another window could not be started.", "problem")
 

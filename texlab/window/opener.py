@@ -18,7 +18,7 @@ from texlab.state.changes import (
     with_method,
 )
 from texlab.state.chosen import Sample
-from texlab.storage.projects import OpenedProject, is_project, open_project
+from texlab.storage.projects import OpenedProject, is_handed_on, is_project, open_project
 from texlab.storage.reading import (
     Choice,
     Document,
@@ -198,7 +198,8 @@ class Opener:
                 show(opened)
             if number != self._newest:
                 return
-            self._settings.add_recent(path)
+            if not is_handed_on(path):
+                self._settings.add_recent(path)
             if opened.layout:
                 self.layout_wanted(opened.layout)
             self._controller.said.emit(" ".join(opened.notes))

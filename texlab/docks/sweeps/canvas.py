@@ -17,6 +17,8 @@ from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import show_tip
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent, QWheelEvent
 
     from texlab.state.sweeps import ShownCell
@@ -40,6 +42,7 @@ class SheetCanvas(OwnKeys, CellPlaces):
 
     taken = Signal(int)
     opened = Signal(int)
+    opened_here = Signal(int)
     kept_turned = Signal(int)
     compared = Signal()
     zoom_wanted = Signal(int)
@@ -49,6 +52,8 @@ class SheetCanvas(OwnKeys, CellPlaces):
         self._empty = empty
         self.theme: Theme = DARK
         self.taken_words = "parameters"
+        self.is_elsewhere: Callable[[int], bool] = lambda index: False
+        """Whether a cell is of another texture than the columns, and so opens in a window of its own."""
         self._over: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
@@ -192,9 +197,13 @@ class SheetCanvas(OwnKeys, CellPlaces):
         menu = QMenu(self)
         menu.setObjectName("sweeps-cell-menu")
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        elsewhere = self.is_elsewhere(index)
+        opens = [("Open in a &new window\tN" if elsewhere else "Open as a &new column\tN", self.opened)]
+        if elsewhere:
+            opens.append(("Open as a &column here: all columns take its texture", self.opened_here))
         for text, signal in (
             (f"&Take the {self.taken_words}\tReturn", self.taken),
-            ("Open as a &new column\tN", self.opened),
+            *opens,
             ("&Let go\tK" if index in self.kept else "&Keep\tK", self.kept_turned),
         ):
             menu.addAction(text).triggered.connect(partial(self._tell, signal, index))

@@ -22,7 +22,7 @@ from texlab.docks.sweeps.panel import SweepPanel
 from texlab.docks.sweeps.places import LARGEST, SMALLEST, USUAL
 from texlab.docks.sweeps.sheet_view import ContactSheetView
 from texlab.docks.sweeps.words import arranged, headings, setting, sortings, status_text
-from texlab.state.intentions import AskOnce, CellAsColumn, RunSweep, StopSweep, TakeCell, Tell
+from texlab.state.intentions import AskOnce, CellAsColumn, CellInWindow, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.plain import Label, set_tip
@@ -69,6 +69,8 @@ class SweepsDock(FramedDock):
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
         self.sheet.taken.connect(self._take)
         self.sheet.opened.connect(self._open)
+        self.sheet.opened_here.connect(self._open_here)
+        self.sheet.canvas.is_elsewhere = self._is_elsewhere
         self.sheet.kept.connect(self._keep)
         self.sheet.zoom_wanted.connect(self._zoom)
         self.sheet.compared.connect(self.compare)
@@ -316,7 +318,18 @@ class SweepsDock(FramedDock):
     def _once(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
         self.intention.emit(AskOnce("difference", lambda should_stop: work(), done))
 
+    def _is_elsewhere(self, index: int) -> bool:
+        """Whether a cell is of another texture than the one that all columns have."""
+        cell, own = self.cells[index].cell, self.scene.exemplar
+        return TEXTURE in cell.values and (own is None or cell.job.inputs["exemplar"].sha256 != own.sha256)
+
     def _open(self, index: int) -> None:
+        if self._is_elsewhere(index):
+            self.intention.emit(CellInWindow(self.cells[index].cell))
+        else:
+            self._open_here(index)
+
+    def _open_here(self, index: int) -> None:
         self.intention.emit(CellAsColumn(self.cells[index].cell, self.shown.column_id))
 
     def _take(self, index: int) -> None:

@@ -24,13 +24,15 @@ class ContactSheetView(QScrollArea):
     """Shows the cells of a sweep in their places.
 
     ``taken(index)``: a finished cell was clicked, or chosen with Return. ``opened(index)``: it is wanted as a
-    column (N, the middle button, the menu). ``kept(index)``: it is to be kept, or let go (K, the menu).
+    column (N, the middle button, the menu), ``opened_here(index)``: as one whose texture all columns take.
+    ``kept(index)``: it is to be kept, or let go (K, the menu).
     ``compared()``: the cells that are kept are to be seen side by side (C).
     ``zoom_wanted(steps)``: the wheel was turned with Ctrl held, or + or - was pressed.
     """
 
     taken = Signal(int)
     opened = Signal(int)
+    opened_here = Signal(int)
     kept = Signal(int)
     compared = Signal()
     zoom_wanted = Signal(int)
@@ -45,6 +47,7 @@ class ContactSheetView(QScrollArea):
         for told, tells in (
             (self.canvas.taken, self.taken),
             (self.canvas.opened, self.opened),
+            (self.canvas.opened_here, self.opened_here),
             (self.canvas.kept_turned, self.kept),
             (self.canvas.compared, self.compared),
             (self.canvas.zoom_wanted, self.zoom_wanted),
