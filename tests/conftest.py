@@ -29,7 +29,7 @@ os.environ.setdefault("PYTHONHASHSEED", "0")
 settings.register_profile("texlab", deadline=None, derandomize=True, database=None)
 settings.load_profile("texlab")
 
-pytest_plugins = ["tests.coverage_floor"]
+pytest_plugins = ["tests.coverage_floor", "tests.coverage_rest"]
 PATIENCE_S = 20.0
 MOVE_S = 2.0
 

@@ -5,8 +5,10 @@ The report stands above pytest's summary line, which stays the last thing printe
 
 from __future__ import annotations
 
-import io
-from typing import TYPE_CHECKING
+import json
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -14,6 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
 FLOORS = {"texlab_core": 90.0, "texlab": 80.0}
+# Name, statements and missing ones of every file.
+Row = tuple[str, int, int]
+_TABLE = pytest.StashKey[list[Row]]()
 _COVERED = pytest.StashKey[dict[str, float]]()
 
 
@@ -28,8 +33,9 @@ def pytest_runtestloop(session: pytest.Session) -> Generator[None, object, objec
     if session.config.getoption("--coverage-floors"):
         if plugin is None or plugin.cov_controller is None:
             raise pytest.UsageError("--coverage-floors needs --cov.")
+        session.config.stash[_TABLE] = _analyze(plugin.cov_controller.cov)
         session.config.stash[_COVERED] = {
-            package: plugin.cov_controller.cov.report(include=[f"{package}/*"], file=io.StringIO())
+            package: _percent([row for row in session.config.stash[_TABLE] if row[0].startswith(f"{package}/")])
             for package in FLOORS
         }
     return outcome
@@ -40,9 +46,33 @@ def pytest_terminal_summary(
     terminalreporter: pytest.TerminalReporter, config: pytest.Config
 ) -> Generator[None, object, object]:
     outcome = yield
+    rows = config.stash.get(_TABLE, [])
+    lacking = [row for row in rows if row[2]]
+    for name, statements, missing in lacking:
+        part = _percent([(name, statements, missing)])
+        terminalreporter.write_line(f"{name:64} {statements:6} {missing:5} {part:5.1f} %")
+    if rows:
+        terminalreporter.write_line(f"{len(rows) - len(lacking)} files are covered wholly.")
     for package, percent in config.stash.get(_COVERED, {}).items():
         terminalreporter.write_line(f"{package}: {percent:.1f} % covered, at least {FLOORS[package]:g} % wanted")
     return outcome
+
+
+def _analyze(coverage: Any) -> list[Row]:
+    """Look at every file once: reports for people do it once each."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "coverage.json")
+        coverage.json_report(outfile=str(path))
+        files = json.loads(path.read_text("utf-8"))["files"]
+    counts = {
+        name: (file["summary"]["num_statements"], file["summary"]["missing_lines"]) for name, file in files.items()
+    }
+    return [(Path(name).as_posix(), *counts[name]) for name in sorted(counts)]
+
+
+def _percent(rows: list[Row]) -> float:
+    statements = sum(row[1] for row in rows)
+    return 100.0 * (1 - sum(row[2] for row in rows) / statements) if statements else 100.0
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
