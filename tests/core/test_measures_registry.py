@@ -43,7 +43,8 @@ def test_every_file_declares_measures() -> None:
     for name in sorted(files - GROUND):
         text = (Path(package.__path__[0]) / f"{name}.py").read_text(encoding="utf-8")
         assert re.search(r"^register\(", text, re.MULTILINE), f"measures/{name}.py declares no measure"
-    assert failures() == ()
+    broken = [each.sentence for each in failures()]
+    assert not broken, " ".join(broken)
 
 
 @pytest.mark.parametrize("measure", measures().values(), ids=lambda measure: measure.id)
@@ -164,7 +165,7 @@ def test_measures_of_other_packages_are_found_named_and_isolated(
     found = measures()
     assert found["other-measure"].package == "good-luck"
     assert "half-done" not in found
-    (failure,) = failures()
+    (failure,) = (each for each in failures() if each.source.package == "bad-luck")
     assert failure.source == Source("bad-luck", "measures_that_fail")
     assert failure.reason == "OSError: no licence"
     assert caplog.messages == [failure.sentence]

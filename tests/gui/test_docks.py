@@ -119,9 +119,11 @@ def test_nobody_waits_for_what_nobody_sees(qtbot: Any, watch: Any) -> None:
 
 @pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
 def test_every_dock_says_what_it_is(kind: Any) -> None:
-    assert kind.name.isidentifier()
-    assert kind.title
-    assert kind.help.endswith(".")
+    missing = [each for each in ("name", "title", "help") if not isinstance(getattr(kind, each, None), str)]
+    assert not missing, f"{kind.__module__}.{kind.__name__} lacks {' and '.join(missing)}, as class attributes."
+    assert kind.name.isidentifier(), f"The name of a dock is a Python name, got {kind.name!r}."
+    assert kind.title, f"The dock {kind.name} has an empty title."
+    assert kind.help.endswith("."), f"The help of the dock {kind.name} is a sentence, got {kind.help!r}."
 
 
 def test_a_dock_is_made_when_it_is_first_seen(qtbot: Any, explorer: Any) -> None:
