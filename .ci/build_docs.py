@@ -6,8 +6,10 @@ configuration and no other tool. The tutorials are Markdown; what they print is 
 
 from __future__ import annotations
 
+import importlib
 import re
 import sys
+import warnings
 from html import escape
 from pathlib import Path
 
@@ -22,8 +24,9 @@ td, th { border: 1px solid #8884; padding: .2rem .6rem; text-align: left; }
 :root { color-scheme: light dark; }
 """
 # The public face of the package; pdoc follows what they show.
+FRONT = "texlab_core"
 MODULES = (
-    "texlab_core",
+    FRONT,
     *("texlab_core.api", "texlab_core.series", "texlab_core.progress", "texlab_core.contract"),
     *("texlab_core.engine.params", "texlab_core.engine.registry", "texlab_core.engine.steps"),
     *(
@@ -34,8 +37,8 @@ MODULES = (
     ),
     *("texlab_core.images.exemplar", "texlab_core.images.gallery", "texlab_core.documents.record"),
     *("texlab_core.measures.registry", "texlab_core.measures.subject"),
-    *("texlab_core.batch", "texlab_core.batch.plan", "texlab_core.batch.running", "texlab_core.batch.places"),
-    *("texlab_core.batch.processes", "texlab_core.batch.cluster"),
+    # A package stands for all that is in it.
+    "texlab_core.batch",
     *("texlab_core.transforms.steerable", "texlab_core.transforms.gaussian", "texlab_core.transforms.laplacian"),
 )
 
@@ -54,8 +57,14 @@ def build(out: Path) -> None:
     import pdoc.render
 
     sys.path.insert(0, str(ROOT))
+    front = importlib.import_module(FRONT)
+    # Its names are imported when they are first used; pdoc looks only for what is there.
+    vars(front).update({name: getattr(front, name) for name in front.__all__})
     pdoc.render.configure(docformat="numpy", footer_text="TexLab", search=True)
-    pdoc.pdoc(*MODULES, output_directory=out / "api")
+    with warnings.catch_warnings():
+        # Types that are imported for the checker only are shown by their names.
+        warnings.filterwarnings("ignore", "Error parsing type annotation", UserWarning)
+        pdoc.pdoc(*MODULES, output_directory=out / "api")
     pages = tutorials()
     for path in pages:
         (out / f"{path.stem}.html").write_text(page(path.read_text("utf-8")), "utf-8")

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import texlab_core
+
 if TYPE_CHECKING:
     from types import ModuleType
 
@@ -68,7 +70,7 @@ def test_tutorials_lead_to_one_another() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore")
+@pytest.mark.filterwarnings("ignore", "error:Found ", "error:The module specification")
 def test_the_site_is_built(builder: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "path", list(sys.path))
     builder.build(tmp_path)
@@ -81,3 +83,8 @@ def test_the_site_is_built(builder: ModuleType, tmp_path: Path, monkeypatch: pyt
     reference = (tmp_path / "api" / "texlab_core" / "api.html").read_text("utf-8")
     assert "synthesize" in reference
     assert "gallery:NAME" in reference
+    front = (tmp_path / "api" / "texlab_core.html").read_text("utf-8")
+    for name in texlab_core.__all__:
+        section = re.search(rf'<section id="{name}">(.*?)</section>', front, re.DOTALL)
+        assert section is not None, name
+        assert 'class="docstring"' in section[1], name
