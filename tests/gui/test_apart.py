@@ -133,6 +133,17 @@ def test_they_come_back_with_the_session(
     assert np.array_equal(again.workspace.columns[ids(again)[1]].pane.picture is None, False)
 
 
+def test_a_column_that_goes_back_while_it_is_folded_away_belongs_to_the_stage(explorer: Explorer) -> None:
+    stage, (first, second) = explorer.workspace, ids(explorer)
+    stage.turn_apart(second)
+    stage.show_only((first,))
+    stage.turn_apart(second)
+    assert stage.isAncestorOf(stage.columns[second])
+    assert not stage.columns[second].isVisible()
+    stage.show_only(None)
+    assert stage.columns[second] in stage.grid.cells
+
+
 def test_a_window_that_is_put_back_stays_back(
     qtbot: Any, open_window: Callable[..., Explorer], texture: Path
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import subprocess
 import sys
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from texlab.app import memory
+from texlab.app.malloc import HEAPS
 from texlab.app.memory import STEP_BYTES, Thrift, give_back, memory_bytes
 from texlab_core.transforms import filters
 from texlab_core.work.tasks import finish
@@ -87,3 +89,47 @@ def test_large_filters_are_let_go_of_the_oldest_first(monkeypatch: pytest.Monkey
     give_back()
     assert list(cache._arrays) == [(300,), (200,)]
     assert cache._bytes == 500
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only this C library has these heaps")
+@pytest.mark.parametrize("told", [True, False])
+def test_large_pieces_stay_the_systems_own_and_heaps_are_few(told: bool) -> None:
+    if not hasattr(ctypes.CDLL(None), "mallopt"):
+        pytest.skip("another C library")
+    script = HEAPS_OF_THREADS if told else HEAPS_OF_THREADS.replace("assert keep_little()", "")
+    said = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    own, heaps = (int(each) for each in said.split())
+    # Once a piece of 20 MB was freed, malloc by itself takes the next ones from its heaps, and keeps them.
+    assert own == (8 if told else 0)
+    assert (heaps <= HEAPS) is told
+
+
+HEAPS_OF_THREADS = """
+import ctypes, threading
+from tests.soak.census import malloc_info_2
+from texlab.app.malloc import OWN_BYTES, keep_little
+assert keep_little()
+library = ctypes.CDLL(None)
+library.malloc.restype = ctypes.c_void_p
+library.free.argtypes = [ctypes.c_void_p]
+library.free(library.malloc(20 * 2**20))
+before = malloc_info_2().hblks
+held = [library.malloc(OWN_BYTES + 1) for _ in range(8)]
+own = malloc_info_2().hblks - before
+ready = threading.Barrier(12)
+def work():
+    library.malloc(1000)
+    ready.wait()
+threads = [threading.Thread(target=work) for _ in range(12)]
+for each in threads:
+    each.start()
+for each in threads:
+    each.join()
+library.open_memstream.restype = ctypes.c_void_p
+library.fclose.argtypes = [ctypes.c_void_p]
+text, size = ctypes.c_char_p(), ctypes.c_size_t()
+stream = library.open_memstream(ctypes.byref(text), ctypes.byref(size))
+library.malloc_info(0, ctypes.c_void_p(stream))
+library.fclose(stream)
+print(own, text.value.count(b"<heap nr"))
+"""

@@ -96,14 +96,19 @@ class _Mallinfo2(ctypes.Structure):
     ]  # fmt: skip
 
 
-def malloc_in_use() -> int:
-    """Return the bytes that malloc has given out (glibc 2.33 and newer); 0 elsewhere."""
+def malloc_info_2() -> _Mallinfo2:
+    """Return what malloc says of itself (glibc 2.33 and newer); zeros elsewhere."""
     if sys.platform != "linux":
-        return 0
+        return _Mallinfo2()
     try:
         mallinfo2 = ctypes.CDLL(None).mallinfo2
     except (AttributeError, OSError):
-        return 0
+        return _Mallinfo2()
     mallinfo2.restype = _Mallinfo2
-    found = mallinfo2()
+    return mallinfo2()  # type: ignore[no-any-return]
+
+
+def malloc_in_use() -> int:
+    """Return the bytes that malloc has given out; 0 where that is not known."""
+    found = malloc_info_2()
     return int(found.uordblks + found.hblkhd)

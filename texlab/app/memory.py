@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
-import sys
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from texlab.app.malloc import trim
 from texlab.runs.worker import Worker
 
 # Less than this is not worth the milliseconds in which nobody else gets memory.
@@ -36,11 +35,7 @@ def give_back() -> None:
     from texlab_core.transforms.filters import shrink
 
     shrink(FILTERS_BYTES)
-    if sys.platform == "linux":
-        try:
-            ctypes.CDLL(None).malloc_trim(0)
-        except (AttributeError, OSError):
-            return
+    trim()
 
 
 class Thrift(QObject):

@@ -13,6 +13,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtGui import QIcon, QPixmap
 from PySide6.QtWidgets import QApplication
 
+from texlab.app.malloc import keep_little
 from texlab.storage.settings import Settings
 from texlab.style.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window.main_window import MainWindow
@@ -33,6 +34,7 @@ def application() -> QApplication:
     existing = QApplication.instance()
     if isinstance(existing, QApplication):
         return existing
+    keep_little()
     made = QApplication(sys.argv[:1])
     made.setApplicationName("texlab")
     made.setApplicationDisplayName("")

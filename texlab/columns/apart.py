@@ -105,7 +105,8 @@ class Apart(QObject):
     def put_back(self, column_id: int) -> None:
         """Let a column go back to the stage."""
         self._places.pop(column_id, None)
-        if self._close(column_id):
+        # It may be folded away there, and would be nobody's.
+        if self._close(column_id, self._stage):
             self.changed.emit()
 
     def drop(self, column_id: int) -> None:
