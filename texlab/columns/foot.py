@@ -92,10 +92,10 @@ class Foot(QWidget):
         self.box.setStretch(1, 0 if words == "beside" else 1)
         policy = QSizePolicy.Policy
         for each in self.figures:
-            # What is longer than the longest figure is broken into lines there.
-            each.setWordWrap(words == "beside")
             across = policy.Preferred if words == "beside" else policy.Fixed
             each.setSizePolicy(across, policy.Minimum if words == "beside" else policy.Fixed)
+            # What is longer than the longest figure is broken into lines there; a new policy knows of none.
+            each.setWordWrap(words == "beside")
         self.line.set_lines(self._lines)
         self.line.setVisible(True)
         self._take_room()

@@ -134,6 +134,8 @@ class ConvergenceDock(FramedDock):
     title = "Convergence"
     help = "How far a run is from the exemplar as it goes on: statistics by iteration, windows while growing."
     order = 50
+    # Each run has its own iterations.
+    no_settings = frozenset({"iteration"})
     empty = "Curves appear while a method that iterates runs, and when a growth has finished."
 
     def build(self) -> None:

@@ -23,6 +23,7 @@ from texlab.state.intentions import ShowStage, TakePicture
 from texlab.style.text_size import is_teaching
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.calm_wheel import ChoiceBox
+from texlab.widgets.control_settings import control_settings
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.number_box import WholeBox
 from texlab.widgets.once import Once
@@ -33,10 +34,11 @@ from texlab.widgets.readout import MARGIN, Readout
 from texlab.widgets.scroll_room import ScrollRoom
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
+    from texlab.widgets.control_settings import Setting
     from texlab.widgets.slider import Slider
     from texlab_core.engine.steps import FloatImage
 
@@ -117,6 +119,8 @@ class FramedDock(Dock):
     """Whether its answers are as large as pictures, and go when they are out of date and out of sight."""
     folds: ClassVar[bool] = True
     """Whether it leaves its room to the body when one teaches."""
+    no_settings: ClassVar[frozenset[str]] = frozenset()
+    """Controls that say something about the column, not about how the tab stands."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -265,6 +269,16 @@ class FramedDock(Dock):
             self._stale.adjustSize()
             self._stale.move(max(0, (self.body.width() - self._stale.width()) // 2), 4)
             self._stale.raise_()
+
+    def settings(self) -> dict[str, Setting]:
+        """Return how the controls stand, by name, folded away or not."""
+        prefix = f"{self.name}-"
+        found = control_settings(self, prefix) | control_settings(self._fold, prefix)
+        return {name: value for name, value in found.items() if name not in self.no_settings}
+
+    def take_settings(self, wanted: Mapping[str, Any]) -> tuple[str, ...]:
+        """Set controls by name, as a user would; return one clause for each that cannot be set."""
+        return super().take_settings({k: value for k, value in wanted.items() if k not in self.no_settings})
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to the body, or show the controls again."""

@@ -38,6 +38,8 @@ class StepsDock(FramedDock):
     empty = "The stages of a run appear here."
     heavy = True
     folds = False
+    # The stage is what is looked at, and each run has its own.
+    no_settings = frozenset({"slider"})
 
     def build(self) -> None:
         """Make the scrubber and the picture."""

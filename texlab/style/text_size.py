@@ -102,23 +102,23 @@ def text_scale(widget: QWidget) -> float:
 
 
 class _Follower(QObject):
-    def __init__(self, widget: QWidget, pixels: int, give: Callable[[int], object]) -> None:
+    def __init__(self, widget: QWidget, changed: Callable[[], object]) -> None:
         super().__init__(widget)
-        self._widget = widget
-        self._pixels = pixels
-        self._give = give
+        self._changed = changed
         widget.installEventFilter(self)
-        self._follow()
-
-    def _follow(self) -> None:
-        self._give(round(self._pixels * text_scale(self._widget)))
+        changed()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.FontChange:
-            self._follow()
+            self._changed()
         return False
+
+
+def follow_text(widget: QWidget, changed: Callable[[], object]) -> None:
+    """Call ``changed`` now and whenever this widget's text has another size; its parent's may come before."""
+    _Follower(widget, changed)
 
 
 def grow_with_text(widget: QWidget, pixels: int, give: Callable[[int], object]) -> None:
     """Call ``give`` with a size that is ``pixels`` for usual text, now and whenever the widget's text changes."""
-    _Follower(widget, pixels, give)
+    follow_text(widget, lambda: give(round(pixels * text_scale(widget))))

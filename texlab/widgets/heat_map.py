@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import ink_on, paint
+from texlab.style.text_size import is_teaching
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.tables import add_copying
 
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
     from texlab.style.theme import Theme
 
+# Between the words of two cells.
+PADDING = 4
 ARROWS = {
     Qt.Key.Key_Left: (0, -1),
     Qt.Key.Key_Right: (0, 1),
@@ -42,7 +46,8 @@ class HeatMap(OwnKeys, QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(120, 60)
+        self.least = QSize(120, 60)
+        self._needed = QSize()
         self._theme: Theme | None = None
         self._places: NDArray[np.float32] = np.zeros((0, 0), np.float32)
         self._colours: NDArray[np.uint8] = np.zeros((0, 0, 3), np.uint8)
@@ -87,6 +92,7 @@ class HeatMap(OwnKeys, QWidget):
         self._rows, self._columns = list(rows), list(columns)
         if self._selected is not None and not self._exists(*self._selected):
             self._selected = None
+        self._ask_for_room()
         self.update()
 
     @property
@@ -112,6 +118,28 @@ class HeatMap(OwnKeys, QWidget):
         """Ask for cells that hold their numbers."""
         rows, columns = self._places.shape
         return QSize(60 + 46 * max(columns, 2), 24 + 22 * max(rows, 3))
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the least size; when one teaches, what every name and number has room in."""
+        needed = self._needed if is_teaching() else QSize()
+        return self.least.expandedTo(needed)
+
+    def _ask_for_room(self) -> None:
+        metrics = self.fontMetrics()
+        left, top, _, _ = self._geometry()
+        words = [*self._columns, *(text for row in self._texts for text in row)]
+        width = max((metrics.horizontalAdvance(each) for each in words), default=0) + PADDING
+        rows, columns = self._places.shape
+        needed = QSize(math.ceil(left + columns * width), math.ceil(top + rows * (metrics.height() + 1)))
+        if needed != self._needed:
+            self._needed = needed
+            self.updateGeometry()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Ask for room for other letters."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._ask_for_room()
 
     def cell_rect(self, row: int, column: int) -> QRectF:
         """Return where a cell is painted."""

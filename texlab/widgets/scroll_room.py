@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QStyle
+from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QScrollArea, QSizePolicy, QStyle
 
 from texlab.style.text_size import is_teaching
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
-    from PySide6.QtWidgets import QWidget
+    from PySide6.QtWidgets import QLayoutItem, QWidget
 
 # Up to these parts of the window's width and height a tab has the room that it asks for, when one teaches.
 MOST = (0.6, 0.3)
@@ -71,7 +71,7 @@ class ScrollRoom(QScrollArea):
         layout = inner.layout()
         if layout is not None and layout.hasHeightForWidth():
             # Words take more lines than the least that they say they need.
-            lines = layout.minimumHeightForWidth(max(needed.width(), room.width() - bar * (not down)))
+            lines = least_height(layout, max(needed.width(), room.width() - bar * (not down)))
             needed = needed.expandedTo(QSize(0, lines))
         if needed.height() > room.height() and not down:
             room -= QSize(bar, 0)
@@ -83,3 +83,40 @@ class ScrollRoom(QScrollArea):
             self.updateGeometry()
             self._fit()
         return super().eventFilter(watched, event)
+
+
+def least_height(item: QLayoutItem, width: int) -> int:
+    """Return the least height at which all words of a part have their lines; pictures and plots take the least.
+
+    Qt has only ``QLayout.minimumHeightForWidth``, which gives pictures the height that they like best.
+    """
+    if item.isEmpty():
+        return 0
+    least = item.minimumSize().height()
+    widget = item.widget()
+    if widget is not None:
+        inner = widget.layout()
+        if inner is not None and inner.hasHeightForWidth():
+            return max(least, least_height(inner, width))
+        return max(least, item.heightForWidth(width) if isinstance(widget, QLabel) else 0)
+    if not isinstance(item, QBoxLayout):
+        return least
+    margins = item.contentsMargins()
+    width -= margins.left() + margins.right()
+    parts = [each for place in range(item.count()) if (each := item.itemAt(place)) is not None]
+    shown = [each for each in parts if not each.isEmpty()]
+    if item.direction() == QBoxLayout.Direction.TopToBottom:
+        needed = _least_below_each_other(shown, width) + item.spacing() * (len(shown) - 1)
+    else:
+        # Side by side each has the width that it was given last.
+        widths = (min(each.geometry().width() or width, width) for each in shown)
+        needed = max(map(least_height, shown, widths), default=0)
+    return max(least, needed + margins.top() + margins.bottom())
+
+
+def _least_below_each_other(items: list[QLayoutItem], width: int) -> int:
+    leasts = [least_height(each, width) for each in items]
+    wanted = [each.heightForWidth(width) if each.hasHeightForWidth() else 0 for each in items]
+    # Where Qt has too little it cuts the highest parts down to one height, which must leave all words whole.
+    whole = max((least for least, want in zip(leasts, wanted, strict=True) if want <= least), default=0)
+    return sum(max(least, min(want, whole)) for least, want in zip(leasts, wanted, strict=True))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from texlab.widgets.plain import Label
@@ -12,7 +12,7 @@ from texlab.widgets.plain import Label
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from PySide6.QtGui import QAction
+    from PySide6.QtGui import QAction, QResizeEvent
 
     from texlab.state.lesson_scene import LessonScene
 
@@ -25,7 +25,7 @@ class LessonBar(QWidget):
         self.setObjectName("lesson-bar")
         self.setAccessibleName("Lesson that is given")
         self.count = Label(name="lesson-count")
-        self.sentence = Label(name="lesson-sentence")
+        self.sentence = _Sentence(name="lesson-sentence")
         # A font of its own would be taken back by the style sheet, which gives it its size.
         self.sentence.setProperty("role", "sentence")
         self.sentence.setWordWrap(True)
@@ -56,6 +56,21 @@ class LessonBar(QWidget):
         self.sentence.setText(step.sentence)
         ready = sum(lesson.ready)
         self.readiness.setText("ready" if ready == count else f"{ready} of {count} ready")
+
+
+class _Sentence(Label):
+    """Has the lines that it needs, also where a tab takes all the room that can be spared."""
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the height of all lines in the width that there is."""
+        least = super().minimumSizeHint()
+        return QSize(least.width(), max(least.height(), self.heightForWidth(self.width())))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Ask for other room where there are other lines."""
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self.updateGeometry()
 
 
 def _button(action: QAction) -> QToolButton:

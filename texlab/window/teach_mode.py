@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QKeySequence
 
+from texlab.state.lesson_scene import NO_LESSON
 from texlab.style.text_size import next_zoom
 from texlab.window.chalk import Chalk
 from texlab.window.layouts import HEIGHTS, SIDES
@@ -20,12 +21,19 @@ if TYPE_CHECKING:
     from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
     from texlab.docks.host import DockHost
+    from texlab.state.lesson_scene import LessonScene
     from texlab.state.session import Session
     from texlab.window.main_window import MainWindow
+    from texlab_core.documents.lessons import LessonStep
 
 EXEMPLAR = 0
 # The presenter stands nearer than the first row.
 NOTES_FACTOR = 1.2
+# So many columns of a step stand side by side.
+MOST_BESIDE = 4
+# Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
+SHOW_ALL = ("lab", "lessons")
+SHARE_WITHOUT_COLUMNS = 0.6
 ON_GLASS = ("ink", "halo", "spotlight")
 
 
@@ -48,6 +56,7 @@ class TeachMode(QObject):
         self._kept: set[int] = set()
         self._hidden: set[int] = set()
         self._chosen = 0
+        self._lesson = NO_LESSON
         self._folded = True
         self._share = HEIGHTS["teach"]
         self._was_full = self._was_on = False
@@ -113,8 +122,41 @@ class TeachMode(QObject):
                 self.notes.set_open(False)
         elif not self._was_on and self.notes.other_screen() is not None:
             self.notes.set_open(True)
+        entered = self.on and not self._was_on
         self._was_on = self.on
+        if entered and self._lesson.step is not None:
+            self._window.show_dock(_tab_of(self._lesson.step))
+            self._make_room(self._lesson.step)
         self._show_columns()
+
+    # Lessons.
+
+    def show_lesson(self, lesson: LessonScene) -> None:
+        """Let a step that is new have the room that it needs: its columns side by side, its tab."""
+        self.notes.show_lesson(lesson)
+        before, self._lesson = self._lesson, lesson
+        step = lesson.step
+        if not self.on or step is before.step:
+            return
+        if step is not None:
+            self._make_room(step)
+        elif before.step is not None:
+            self._kept.clear()
+            self._window.actions_by_name["tab-alone"].setChecked(False)
+            self._window.layouts.share_height(HEIGHTS["teach"])
+        self._show_columns()
+
+    def _make_room(self, step: LessonStep) -> None:
+        columns = [column.id for column in self._session.state.columns]
+        self._hidden.clear()
+        self._kept = set(columns) if 1 < len(columns) <= MOST_BESIDE else set()
+        # Experiments and drawings show the exemplar themselves, where there is one.
+        alone = not columns and (step.exemplar is None or _tab_of(step) in SHOW_ALL)
+        self._window.actions_by_name["tab-alone"].setChecked(alone)
+        # The sentence has other lines than the one before.
+        self._window.settle_middle()
+        share = 1.0 if alone else HEIGHTS["teach"] if columns else SHARE_WITHOUT_COLUMNS
+        self._window.layouts.share_height(share)
 
     # Columns.
 
@@ -216,3 +258,7 @@ class TeachMode(QObject):
             self._window.showMaximized()
         else:
             self._window.showNormal()
+
+
+def _tab_of(step: LessonStep) -> str:
+    return "lessons" if step.tab is None else step.tab.name

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from texlab.runs.lesson_runner import Opened
     from texlab.state.session import Aside
     from texlab.storage.autosave import Autosave
+    from texlab.widgets.control_settings import Setting
     from texlab.window.main_window import MainWindow
     from texlab.window.presenter import Presenter
     from texlab_core.documents.lessons import Lesson, LessonStep
@@ -86,6 +87,9 @@ class Teacher(QObject):
         self._asked = 0
         self._first_place = 0
         self._to_show: LessonStep | None = None
+        # How results were shown, and how the controls of tabs stood, before a step set them.
+        self._tiled = False
+        self._controls: dict[str, dict[str, Setting]] = {}
         self._scene = LessonScene(folder=folder)
         self.desk = LessonDesk(window, controller, hosts, folder)
         self.desk.moved = self._moved
@@ -155,6 +159,7 @@ class Teacher(QObject):
     def _begin(self, opened: Opened) -> None:
         if self._aside is None:
             self._aside = self._session.set_aside()
+            self._tiled = self._window.actions_by_name["tile"].isChecked()
             self._autosave.hold(self._aside.state, self._aside.selected_id)
             # Columns of the lesson are none of the user's.
             self._first_id = self._aside.state.next_id
@@ -200,8 +205,11 @@ class Teacher(QObject):
         # The keyboard stays where it is: Page Down goes on, whatever is in front.
         if not self._window.show_dock(name):
             self._controller.problem.emit(f"The window has no tab called {name}.")
-        elif step.tab is not None and (problems := self._hosts[name].dock.take_settings(step.tab.settings)):
-            self._controller.problem.emit(f"Tab {self._hosts[name].kind.title}: {'; '.join(problems)}.")
+        elif step.tab is not None:
+            dock = self._hosts[name].dock
+            self._controls.setdefault(name, dock.settings())
+            if problems := dock.take_settings(step.tab.settings):
+                self._controller.problem.emit(f"Tab {dock.title}: {'; '.join(problems)}.")
 
     def _painted(self) -> None:
         """Show zoom, place and marks once the pictures of the step are there."""
@@ -249,6 +257,11 @@ class Teacher(QObject):
         self._scene = LessonScene(folder=self._scene.folder, shelf=self._scene.shelf)
         self._controller.pointing.ask_about(None)
         self._session.bring_back(aside)
+        for name, controls in self._controls.items():
+            self._hosts[name].dock.take_settings(controls)
+        self._controls.clear()
+        self._window.actions_by_name["tile"].setChecked(self._tiled)
+        self._workspace.set_tiled(self._tiled)
         self._autosave.release()
         self._presenter.show_marks(())
         self._tell()

@@ -75,6 +75,7 @@ _SHOWN: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("8", "more failures: hay and marble"),
     ),
     "msg": (
+        ("1", "block diagram of analysis and synthesis"),
         ("2", "the Gabor filters in the frequency plane"),
         ("3", "block diagram of the method"),
         ("4", "the low-pass residual and its five regions"),
@@ -116,6 +117,7 @@ _SHOWN: Mapping[str, tuple[tuple[str, str], ...]] = {
 # What no step redraws, and why.
 _REASONS: Mapping[tuple[str, str], str] = {
     ("heeger-bergen", "1"): _DIAGRAM,
+    ("msg", "1"): _DIAGRAM,
     ("msg", "3"): _DIAGRAM,
     ("msg", "6"): _DIAGRAM,
     ("forsyth-ponce", "11.1"): "Stimuli of an experiment with human subjects; the program makes no such patterns.",

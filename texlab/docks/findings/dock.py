@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QScrollArea, QVBoxLayout, QWidget
 
 from texlab.docks.base import Question
@@ -22,6 +22,7 @@ from texlab.docks.findings.words import (
 from texlab.docks.frame import FramedDock
 from texlab.docks.recent import Same
 from texlab.style.pictures import to_picture
+from texlab.style.text_size import follow_text
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.tables import add_copying, list_text
@@ -78,6 +79,7 @@ class FindingsDock(FramedDock):
         self.list.setWordWrap(True)
         self.list.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.list.currentRowChanged.connect(self._choose)
+        follow_text(self.list, self._give_width)
         self.text = Label(name="findings-text", wraps=True)
         self.text.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -143,12 +145,6 @@ class FindingsDock(FramedDock):
         self.list.blockSignals(blocked)
         self._give_width()
         self._show_chosen()
-
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the size of the text."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self._give_width()
 
     def _give_width(self) -> None:
         """Let no word of the list be broken."""

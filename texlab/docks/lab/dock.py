@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from texlab.docks.lab.page import LabPage
     from texlab.state.scene import Scene
     from texlab.style.theme import Theme
+    from texlab.widgets.control_settings import Setting
 
 PAGES: tuple[type[LabPage], ...] = (
     FiltersPage,
@@ -150,6 +151,12 @@ class LabDock(Dock):
         self._theme = theme
         for page in self._pages.values():
             page.set_theme(theme)
+
+    def settings(self) -> dict[str, Setting]:
+        """Return which experiment is chosen, and how its controls stand."""
+        page = self.page
+        within = page.name.removeprefix(f"{self.name}-")
+        return super().settings() | {f"{within}-{name}": value for name, value in page.settings().items()}
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to what the experiments show, or show their controls again."""

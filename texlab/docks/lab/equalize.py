@@ -117,6 +117,10 @@ class EqualizePage(LabPage):
         column.setContentsMargins(*MARGINS)
         column.addLayout(row, 1)
         column.addWidget(self.make_words())
+        self._offer([])
+        # The figure of the book, ready made.
+        self.two.setCurrentIndex(self.two.findData("ramp"))
+        self.one.setCurrentIndex(self.one.findData("cube-root"))
 
     def show_scene(self, scene: Scene) -> None:
         """List what there is to choose from."""
@@ -129,16 +133,14 @@ class EqualizePage(LabPage):
             items.append(("result", "result"))
         if column is not None:
             items += [(f"stage: {frame.name}", f"frame:{place}") for place, frame in enumerate(column.frames)]
-        items += BOOK
+        self._offer(items)
+
+    def _offer(self, first: list[tuple[str, Any]]) -> None:
+        items = [*first, *BOOK]
         items += [(name.rsplit("/", 1)[-1], name) for name in self._files]
         items += [(f"gallery: {entry.title}", entry.uri) for entry in gallery()]
-        first = not self.two.count()
         for box in (self.two, self.one):
             replace_items(box, items)
-        if first:
-            # The figure of the book, ready made.
-            self.two.setCurrentIndex(self.two.findData("ramp"))
-            self.one.setCurrentIndex(self.one.findData("cube-root"))
 
     def question(self, scene: Scene) -> Question | None:
         """Ask for the equalization of the chosen images."""

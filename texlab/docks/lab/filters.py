@@ -70,7 +70,7 @@ class FiltersPage(LabPage):
         self.scale.setDecimals(1)
         self.readout = self.add_readout()
         self.pictures = Pictures("lab-filters-responses", spots_bars.FILTERS)
-        self.details = Pictures("lab-filters-details", 2, columns=2, linked=False)
+        self.details = Pictures("lab-filters-details", 2, linked=False)
         self.pictures.hovered.connect(self._hover)
         self.details.hovered.connect(lambda *at: self.readout.setText(self.details.told(*at)))
         self._number = 2

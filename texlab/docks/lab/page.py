@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
     from PySide6.QtCore import QEvent, QPointF
+    from PySide6.QtGui import QResizeEvent
 
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
@@ -159,6 +160,23 @@ class Told:
 
 # Ten of them stand side by side, also in a small window.
 SMALLEST = 24, 40
+SPACING = 4
+# Another arrangement is worth it when pictures become so many times as large.
+WORTH = 1.15
+
+
+def best_columns(count: int, width: int, height: int, heading: int) -> int:
+    """Return how many of ``count`` square pictures with headings stand side by side where they are largest.
+
+    All of them do unless more rows make them clearly larger; sizes are in pixels.
+    """
+
+    def side(across: int) -> float:
+        rows = -(-count // across)
+        return min((width - SPACING * (across - 1)) / across, (height - SPACING * (rows - 1)) / rows - heading)
+
+    best = max(range(1, count + 1), key=lambda across: (side(across), across))
+    return best if side(best) > WORTH * max(side(count), 1.0) else count
 
 
 class Pictures(QWidget):
@@ -167,7 +185,7 @@ class Pictures(QWidget):
     hovered = Signal(int, int, int)
     clicked = Signal(int, int, int)
 
-    def __init__(self, name: str, count: int, *, columns: int = 0, linked: bool = True) -> None:
+    def __init__(self, name: str, count: int, *, linked: bool = True) -> None:
         super().__init__()
         self.setObjectName(name)
         self.setAccessibleName("Pictures of the experiment")
@@ -176,10 +194,10 @@ class Pictures(QWidget):
         self.titles: list[Label] = []
         self._parts: list[QWidget] = []
         link = ViewLink() if linked else None
-        grid = QGridLayout(self)
+        self._grid = grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
-        grid.setSpacing(4)
-        columns = columns or count
+        grid.setSpacing(SPACING)
+        self._across = count
         for index in range(count):
             pane = PicturePane(f"{name}-{index}", f"Picture {index + 1}", link)
             pane.setMinimumSize(*SMALLEST)
@@ -187,9 +205,8 @@ class Pictures(QWidget):
             pane.clicked.connect(lambda row, column, index=index: self.clicked.emit(index, row, column))
             title = Label("")
             part = headed(title, pane)
-            grid.addWidget(part, index // columns, index % columns)
-            grid.setColumnStretch(index % columns, 1)
-            grid.setRowStretch(index // columns, 1)
+            grid.addWidget(part, 0, index)
+            grid.setColumnStretch(index, 1)
             self.panes.append(pane)
             self.titles.append(title)
             self._parts.append(part)
@@ -203,6 +220,26 @@ class Pictures(QWidget):
             pane.set_picture(None if each is None else each.picture)
             title.setText("" if each is None else each.title)
             set_tip(title, "" if each is None else each.tip or each.title)
+        self._arrange()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Stand in the rows in which the pictures are largest."""
+        super().resizeEvent(event)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        count = len(self.shown) or len(self.panes)
+        across = best_columns(count, self.width(), self.height(), self.fontMetrics().lineSpacing())
+        if across == self._across:
+            return
+        grid, last = self._grid, max(across, self._across)
+        self._across = across
+        for index, part in enumerate(self._parts):
+            grid.addWidget(part, index // across, index % across)
+        for place in range(last):
+            grid.setColumnStretch(place, int(place < across))
+        for place in range(len(self._parts)):
+            grid.setRowStretch(place, int(place * across < count))
 
     def told(self, index: int, row: int, column: int) -> str:
         """Return the value under the pointer in words."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QEvent, QRect, QSize, Qt
+from PySide6.QtCore import QRect, QSize, Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -109,7 +109,7 @@ class LessonsDock(FramedDock):
         self.editor.undone.connect(lambda redo: self.intention.emit(UndoLesson(redo)))
         self._drawing = self._make_drawing()
         both = QWidget()
-        grid = QGridLayout(both)
+        self._grid = grid = QGridLayout(both)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.addWidget(self.words, 0, 0)
         grid.addWidget(self.editor.words, 0, 0)
@@ -205,7 +205,10 @@ class LessonsDock(FramedDock):
             self._shown = lesson.step
             self.words.show_step(lesson.step)
         drawn = lesson.drawn
-        self._drawing.setVisible(lesson.step is not None and lesson.step.drawing is not None)
+        has_drawing = lesson.step is not None and lesson.step.drawing is not None
+        self._drawing.setVisible(has_drawing)
+        # Nobody keeps room for what is hidden.
+        self._grid.setColumnStretch(1, 3 * has_drawing)
         self.pane.set_picture(None if drawn is None else drawn.sheet)
         self.lines.setText("" if drawn is None else "\n".join(drawn.lines))
 
@@ -222,12 +225,6 @@ class LessonsDock(FramedDock):
         super().fold_controls(folded)
         self._is_folded = folded
         self._show_parts()
-
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the size of the text."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self._give_width()
 
     def _give_width(self) -> None:
         """Let the list show its titles whole, when that leaves half of the room to the words."""

@@ -72,6 +72,8 @@ class CodeDock(FramedDock):
     title = "Code"
     help = "The numbers of MSG, 69 for gray: drag or type them and the texture follows; save and open them."
     order = 34
+    # A number of the code is the column's.
+    no_settings = frozenset({"value"})
     empty = "The code appears as soon as there is an exemplar."
 
     def build(self) -> None:

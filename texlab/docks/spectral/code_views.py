@@ -65,7 +65,7 @@ class CodeGrid(HeatMap):
         self._changed: NDArray[np.bool_] = np.zeros((0, 0), bool)
         self._pressed: tuple[int, float] | None = None
         self._moved = False
-        self.setMinimumSize(96, 60)
+        self.least = QSize(96, 60)
 
     def mark_changed(self, changed: NDArray[np.bool_]) -> None:
         """Mark the cells, (R, C), that are not as they were measured."""

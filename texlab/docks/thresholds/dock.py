@@ -29,8 +29,7 @@ from texlab_core.methods.de_bonet.thresholds import MAX_THRESHOLD
 from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from typing import Any
+    from collections.abc import Callable
 
     from texlab.docks.thresholds.table import Origin, TableView
     from texlab.state.scene import ColumnScene, Scene
@@ -63,6 +62,8 @@ class ThresholdsDock(FramedDock):
         "Beside it: what the chosen threshold lets through."
     )
     order = 24
+    # The threshold of the chosen cell is a parameter.
+    no_settings = frozenset({"value"})
     rest_ms = 0
 
     def build(self) -> None:
@@ -295,14 +296,6 @@ class ThresholdsDock(FramedDock):
         if column is not None and self.editor.view is not None:
             self.editor.show_view(self._view(column, self.editor.view.table))
         self.ask()
-
-    def settings(self) -> dict[str, bool | int | float | str]:
-        """Return how the controls stand; the threshold of the chosen cell is a parameter, not a setting."""
-        return {name: value for name, value in super().settings().items() if name != "value"}
-
-    def take_settings(self, wanted: Mapping[str, Any]) -> tuple[str, ...]:
-        """Set controls by name; never a threshold."""
-        return super().take_settings({name: value for name, value in wanted.items() if name != "value"})
 
     # What the user does.
 

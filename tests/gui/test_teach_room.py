@@ -1,0 +1,189 @@
+"""In Teach nothing is cut, and what a step of a lesson shows has the room that it needs."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from dock_scenes import column_of, noise
+from painted_text import cut, lines_of, overlapping, painted
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
+
+from tests.gui.conftest import ids, wait_idle
+from tests.gui.test_lessons import SMALL, give, wait_ready
+from texlab.columns.foot import Foot
+from texlab.docks.lab.dock import LabDock
+from texlab.docks.lab.page import best_columns
+from texlab.docks.spectral.code import CodeDock
+from texlab.docks.spectral.code_views import CodeGrid
+from texlab.docks.steps import StepsDock
+from texlab.state.intentions import LeaveLesson
+from texlab.storage.paths import config_dir
+from texlab.style.colouring import SEQUENTIAL_TABLE
+from texlab.style.text_size import set_least
+from texlab.style.theme import LIGHT, set_text_size
+from texlab.widgets.headed import headed
+from texlab.widgets.heat_map import HeatMap
+from texlab.widgets.picture_pane import PicturePane
+from texlab.widgets.plain import Label
+from texlab.widgets.scroll_room import ScrollRoom
+from texlab.widgets.status_line import StatusLine
+
+if TYPE_CHECKING:
+    from texlab.app.explorer import Explorer
+
+
+@pytest.fixture
+def taught(qapp: Any) -> Any:
+    """Give text the size that it has in Teach."""
+    before = qapp.font().pointSizeF()
+    set_least(20.0)
+    set_text_size(qapp, 20.0, LIGHT)
+    yield
+    set_least(0.0)
+    set_text_size(qapp, before, LIGHT)
+
+
+@pytest.mark.parametrize("kind", [HeatMap, CodeGrid])
+def test_every_name_and_number_of_a_table_has_room(qtbot: Any, taught: None, kind: type[HeatMap]) -> None:
+    table = kind("table", "Table")
+    room = ScrollRoom(table, "room")
+    qtbot.addWidget(room)
+    table.set_theme(LIGHT)
+    names, rows = ["0°", "45°", "90°", "135°"], ["1/32", "1/16"]
+    texts = [["0.59", "12.55", "0.73", "100"], ["1", "2", "3", "4444.4"]]
+    table.show_cells(np.full((2, 4), 0.5), texts, rows, names, SEQUENTIAL_TABLE)
+    for size in ((60, 40), (900, 400)):
+        room.resize(*size)
+        room.show()
+        QApplication.processEvents()
+        words = sorted(each.words for each in painted(table))
+        assert words == sorted([*names, *rows, *texts[0], *texts[1]])
+        assert not overlapping(painted(table))
+
+
+def test_a_tab_scrolls_only_when_words_have_no_room(qtbot: Any, taught: None) -> None:
+    inner, picture, words = QWidget(), PicturePane("picture", "Picture"), Label("many words " * 12)
+    words.setWordWrap(True)
+    column = QVBoxLayout(inner)
+    column.addWidget(headed(Label("heading"), picture), 1)
+    column.addWidget(words)
+    room = ScrollRoom(inner, "room")
+    qtbot.addWidget(room)
+    room.show()
+    for height, scrolls in ((500, False), (120, True)):
+        room.resize(500, height)
+        QApplication.processEvents()
+        assert (inner.height() > room.viewport().height()) == scrolls
+        assert words.height() >= lines_of(words)
+        assert picture.height() >= picture.minimumSizeHint().height()
+
+
+@pytest.mark.parametrize(
+    ("count", "width", "height", "across"),
+    [(10, 1200, 500, 5), (10, 1200, 120, 10), (4, 1200, 320, 4), (4, 600, 600, 2), (1, 500, 500, 1), (3, 0, 0, 3)],
+)
+def test_pictures_stand_in_the_rows_in_which_they_are_largest(
+    count: int, width: int, height: int, across: int
+) -> None:
+    assert best_columns(count, width, height, 20) == across
+
+
+def test_lines_under_pictures_end_without_a_sign(qtbot: Any, taught: None) -> None:
+    line = StatusLine()
+    qtbot.addWidget(line)
+    line.set_lines(1)
+    line.show_parts(["256 x 256", "kept from before", "1.25 s"])
+    line.show()
+    line.resize(250, line.sizeHint().height())
+    assert line.text() == "256 x 256"
+
+
+def test_figures_beside_a_picture_have_all_their_lines(qtbot: Any, taught: None) -> None:
+    foot = Foot("line")
+    qtbot.addWidget(foot)
+    numbers = {"discriminability": 0.5, "visual-difference": 0.5, "laid-down-share": 0.12}
+    foot.show_scene(column_of(noise(8, 8), status="finished", measures=numbers))
+    foot.figures[2].setText("patches that are copied 0%")
+    foot.set_words("line")
+    foot.set_words("beside")
+    foot.resize(foot.width(), 600)
+    foot.show()
+    QApplication.processEvents()
+    for label in foot.figures:
+        assert label.isVisible()
+        assert label.height() >= lines_of(label)
+
+
+def test_how_controls_stand_is_told_when_they_are_folded_away(qtbot: Any) -> None:
+    steps, code, lab = StepsDock(), CodeDock(), LabDock()
+    for dock in (steps, code, lab):
+        qtbot.addWidget(dock)
+        before = dock.settings()
+        dock.fold_controls(True)
+        assert dock.settings() == before
+    lab.choose("lab-plane")
+    assert lab.settings() == {
+        "experiments": "lab-plane",
+        "plane-source": "discs",
+        "plane-slant": 50,
+        "plane-tilt": 30,
+    }
+    # A stage and a number of the code are the run's and the column's.
+    assert steps.settings() == {"speed": 2}
+    assert steps.take_settings({"slider": 3, "speed": 4}) == ()
+    assert code.settings() == {}
+    assert code.take_settings({"value": 3.0}) == ()
+    assert code.box.value() == 0
+
+
+TWO: dict[str, Any] = SMALL | {
+    "title": "Two ways of room",
+    "steps": [
+        {**SMALL["steps"][0], "tab": {"name": "histograms", "settings": {"log": True}}},
+        {
+            "sentence": "A circle becomes an ellipse: the short axis is the tilt, the ratio the slant's cosine.",
+            "tab": {"name": "lab", "settings": {"experiments": "lab-plane", "plane-slant": 20}},
+        },
+    ],
+}
+
+
+def test_in_teach_a_step_has_the_room_that_it_needs(qtbot: Any, explorer: Explorer) -> None:
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    (folder / "two.json").write_text(json.dumps(TWO))
+    window, workspace, lab = explorer.window, explorer.workspace, explorer.hosts["lab"]
+    before = lab.dock.settings()
+    give(qtbot, explorer, "two")
+    wait_ready(qtbot, explorer)
+    window.raise_dock("maps")
+    window.actions_by_name["layout-teach"].trigger()
+    # The columns that a step compares stand side by side, and its tab comes along.
+    qtbot.waitUntil(lambda: window.front_dock() == "histograms")
+    assert workspace.shown_ids == tuple(ids(explorer))
+    assert len(workspace.shown_ids) == 2
+    assert not workspace.exemplar.isHidden()
+    # Without exemplar and columns the tab has all the room, and the sentence has its lines.
+    qtbot.keyClick(window, Qt.Key.Key_PageDown)
+    wait_idle(qtbot, explorer)
+    qtbot.waitUntil(lambda: window.front_dock() == "lab")
+    qtbot.waitUntil(lambda: window.docks["lab"].height() > 0.7 * window.height())
+    assert not workspace.isVisible()
+    assert lab.dock.page.slant.value() == 20
+    assert cut(window, painted(window)) == []
+    qtbot.keyClick(window, Qt.Key.Key_PageUp)
+    wait_idle(qtbot, explorer)
+    qtbot.waitUntil(workspace.isVisible)
+    qtbot.waitUntil(lambda: window.docks["histograms"].height() < 0.6 * window.height())
+    # Whatever a step has set is the user's again.
+    explorer.carrier.carry_out(LeaveLesson())
+    wait_idle(qtbot, explorer)
+    assert len(workspace.shown_ids) == 1
+    assert lab.dock.settings() == before
+    assert explorer.hosts["histograms"].dock.settings()["log"] is False
+    assert not window.actions_by_name["tile"].isChecked()
+    window.actions_by_name["layout-explore"].trigger()
