@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QScrollArea, QSizePolicy, QStyle
+from PySide6.QtWidgets import QBoxLayout, QFrame, QScrollArea, QSizePolicy, QStyle
 
 from texlab.style.text_size import is_teaching
+from texlab.widgets.plain import Label, MarkupLabel
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
@@ -98,7 +99,7 @@ def least_height(item: QLayoutItem, width: int) -> int:
         inner = widget.layout()
         if inner is not None and inner.hasHeightForWidth():
             return max(least, least_height(inner, width))
-        return max(least, item.heightForWidth(width) if isinstance(widget, QLabel) else 0)
+        return max(least, item.heightForWidth(width) if isinstance(widget, Label | MarkupLabel) else 0)
     if not isinstance(item, QBoxLayout):
         return least
     margins = item.contentsMargins()
