@@ -10,6 +10,7 @@ from texlab.docks.bands.pictures import PyramidPictures, PyramidRequest
 from texlab.docks.bands.pyramid import PyramidDock
 from texlab.docks.recent import Recent
 from texlab.style import colouring
+from texlab.style.colouring import DIVERGING
 from texlab.style.pictures import to_picture
 from texlab.style.theme import DARK, LIGHT
 from texlab_core.errors import Cancelled
@@ -314,7 +315,10 @@ def test_a_theme_asks_for_mosaics_in_its_colours(dock, scene, qtbot):
         with qtbot.waitSignal(dock.asks):
             dock.set_theme(theme)
         answer = feed(dock, scene)
-        assert "#{:02x}{:02x}{:02x}".format(*answer.exemplar.picture[0, 0]) == theme.canvas
+        between = answer.exemplar.picture[0, 0].astype(int)
+        assert "#{:02x}{:02x}{:02x}".format(*between) == (theme.canvas if theme is DARK else theme.muted)
+        # A band that is zero everywhere is told from the lines around it.
+        assert np.all(np.abs(DIVERGING[2] - between) > 100)
 
 
 def test_no_scales_leave_the_residuals(dock, scene):

@@ -106,3 +106,18 @@ def part_scaled(session: Any, scale: float) -> Any:
     sample = dataclasses.replace(session.state.sample, scale=scale, crop=Crop(0, 0, 32, 32))
     assert part_words(sample, (60, 75)) == "at 0, 0 of 75 x 60, 150 x 120 scaled to 50 %"
     return sample
+
+
+def test_a_crop_is_of_the_sample_in_use_before_its_picture_has_come(explorer: Explorer, qtbot: Any) -> None:
+    """Crop pressed while another scale is being prepared frames the middle of the scaled source."""
+    exemplar, session = explorer.workspace.exemplar, explorer.session
+    height, width = session.state.sample.source.size
+    shown = exemplar.pane.picture
+    explorer.controller.editing.scale(0.5)
+    assert exemplar.pane.picture is shown
+    qtbot.mouseClick(exemplar.crop_button, Qt.MouseButton.LeftButton)
+    crop = session.state.sample.crop
+    assert (crop.height, crop.width) == (round(height / 2) // 2, round(width / 2) // 2)
+    assert exemplar.panel.boxes["width"].maximum() <= width // 2
+    wait_idle(qtbot, explorer)
+    assert explorer.controller.exemplar.size == (crop.height, crop.width)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from dock_scenes import column_of, noise, scene_of
 from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 
 from texlab.docks.bands.controls import BandCache, PyramidSettings
 from texlab.docks.bands.middle import MOST_SIDE, middle_of, middle_words
@@ -20,6 +20,7 @@ from texlab.widgets import picture_item
 from texlab.widgets.image_pane import ImagePane
 from texlab.widgets.picture_item import PictureItem
 from texlab.widgets.view_link import ViewLink
+from texlab.widgets.zoom_box import ZoomBox
 from texlab_core.stats.bands import split
 
 if TYPE_CHECKING:
@@ -202,3 +203,20 @@ def test_what_is_from_before_says_so(qtbot: Any) -> None:
     dock.present_nothing("")
     assert mark.isHidden()
     assert not dock._stale_soon.isActive()
+
+
+def test_no_zoom_is_said_before_a_picture_is_known(qtbot):
+    link, window = ViewLink(), QWidget()
+    qtbot.addWidget(window)
+    box = ZoomBox("zoom", "Zoom", "Zoom of the pictures", link, window)
+    pane = ImagePane(link, window)
+    pane.resize(300, 300)
+    window.show()
+    link.fit()
+    QApplication.processEvents()
+    assert (box.isEnabled(), box.text(), link.percent) == (False, "\u2013", None)
+    link.set_extent(150, 150)
+    QApplication.processEvents()
+    assert box.isEnabled()
+    assert box.value() == round(link.percent)
+    assert box.text() == f"{box.value():.0f} %"

@@ -111,6 +111,7 @@ class ExemplarView(Cell):
         self._box = self._make_box()
         self._name = ""
         self._crop: Crop | None = None
+        self._size: tuple[int, int] | None = None
         self._rest = Settling(self, SETTLE_MS, self._settle)
         self.pane.installEventFilter(self)
         self.choices = QToolButton()
@@ -168,6 +169,10 @@ class ExemplarView(Cell):
 
     def offer(self, sample: Sample) -> None:
         """Offer the other choices for a picture that was reduced, cut or has transparency; nothing for others."""
+        from texlab_core.images.exemplar import scaled_size
+
+        # A crop is of the sample in use, whose picture may still be on its way.
+        self._size = scaled_size(*sample.source.size, sample.scale)
         whole, part = as_a_whole(sample), at_full_size(sample)
         is_large, use = whole.scale < 1, use_of_alpha(sample.source.notes)
         self.choices.setVisible(is_large or use is not None)
@@ -271,22 +276,20 @@ class ExemplarView(Cell):
         return pg.mkPen(QColor("#ffd54a"), width=2)
 
     def _toggle(self, on: bool) -> None:
-        picture = self.pane.picture
-        if picture is None:
+        if self._size is None:
             self.crop_button.setChecked(False)
             return
         if not on:
             self.crop_changed.emit(None, True)
             return
-        height, width = picture.shape[:2]
+        height, width = self._size
         rows, columns = max(height // 2, min(height, MIN_CROP)), max(width // 2, min(width, MIN_CROP))
         self.crop_changed.emit(Crop((height - rows) // 2, (width - columns) // 2, rows, columns), True)
 
     def _dragged(self, *, final: bool) -> None:
-        picture = self.pane.picture
-        if picture is None or not self._box.isVisible():
+        if self._size is None or not self._box.isVisible():
             return
-        height, width = picture.shape[:2]
+        height, width = self._size
         position, size = self._box.pos(), self._box.size()
         columns = min(max(round(abs(size.x())), MIN_CROP), width)
         rows = min(max(round(abs(size.y())), MIN_CROP), height)
@@ -311,10 +314,10 @@ class ExemplarView(Cell):
         return super().eventFilter(watched, event)
 
     def _nudge(self, down: int, right: int, resize: bool) -> None:
-        picture, crop = self.pane.picture, self._crop
-        if picture is None or crop is None:
+        crop = self._crop
+        if self._size is None or crop is None:
             return
-        height, width = picture.shape[:2]
+        height, width = self._size
         rows, columns, top, left = crop.height, crop.width, crop.top, crop.left
         if resize:
             rows = min(max(rows + down, min(MIN_CROP, height)), height - top)

@@ -56,7 +56,8 @@ class ViewLink(Link[Linked]):
 
     def __init__(self) -> None:
         super().__init__()
-        self._extent = (1, 1)
+        # None as long as nobody knows how large the pictures are.
+        self._known: tuple[int, int] | None = None
         self._thinnest = 0
         self._centre = QPointF()
         self._scale: float | None = None
@@ -66,11 +67,15 @@ class ViewLink(Link[Linked]):
 
     @property
     def percent(self) -> float | None:
-        """Pixels of the screen per hundred of the picture; None without a pane."""
-        if not self._panes:
+        """Pixels of the screen per hundred of the picture; None without a pane, or before any picture is known."""
+        if not self._panes or self._known is None:
             return None
         first = self._panes[0]
         return 100 * first.shown_scale * first.devicePixelRatioF()
+
+    @property
+    def _extent(self) -> tuple[int, int]:
+        return self._known or (1, 1)
 
     def set_percent(self, percent: float) -> None:
         """Show this many pixels of the screen per hundred of the picture, around the present centre."""
@@ -90,8 +95,8 @@ class ViewLink(Link[Linked]):
 
         ``thinnest`` is the shortest side of any picture, where that may be much less.
         """
-        if (height, width, thinnest) != (*self._extent, self._thinnest):
-            self._extent, self._thinnest = (height, width), thinnest
+        if (height, width, thinnest) != (*(self._known or ()), self._thinnest):
+            self._known, self._thinnest = (height, width), thinnest
             if self._scale is None:
                 self.fit()
 

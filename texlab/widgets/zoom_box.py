@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from texlab.widgets.view_link import ViewLink
 
+UNKNOWN = "\u2013"
 LOWEST, HIGHEST = 1.0, 6400.0
 
 
@@ -32,6 +33,9 @@ class ZoomBox(NumberBox):
         self.setSuffix(" %")
         self.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
         self.setStepType(QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
+        # Nothing is said as long as there is no picture.
+        self.setSpecialValueText(UNKNOWN)
+        self.setEnabled(False)
         self._link = link
         # Panes tell of every step of a drag; one look a turn is enough.
         self._look = Once(self, 0, self._show)
@@ -40,6 +44,9 @@ class ZoomBox(NumberBox):
 
     def _show(self) -> None:
         percent = self._link.percent
+        if percent is not None and not self.isEnabled():
+            self.setSpecialValueText("")
+            self.setEnabled(True)
         if percent is not None and not self.lineEdit().isModified():
             with QSignalBlocker(self):
                 self.setValue(percent)

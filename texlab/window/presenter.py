@@ -81,7 +81,8 @@ class Presenter(QObject):
 
     def show_scene(self, scene: Scene) -> None:
         """Show the columns and everything about them."""
-        self._workspace.set_extents(self._session.state.size, self._source_size())
+        if (prepared := self._controller.prepared) is not None:
+            self._workspace.set_extents(self._session.state.size, prepared.source_scaled.size)
         self._workspace.show_scene(scene)
         self._window.parameters.show_scene(scene.selected)
         self._overlays.show_scene(scene)
@@ -174,6 +175,8 @@ class Presenter(QObject):
         self._window.status.pixel.setText(text)
 
     def _show_choice(self) -> None:
+        from texlab_core.images.exemplar import scaled_size
+
         sample = self._session.state.sample
         if sample is None:
             return
@@ -193,7 +196,8 @@ class Presenter(QObject):
         self._workspace.exemplar.offer(sample)
         if prepared is not None:
             panel = self._workspace.exemplar.panel
-            panel.show_choice(prepared.source_scaled.size, sample.scale, sample.crop, sample.source.size)
+            size_now = scaled_size(*sample.source.size, sample.scale)
+            panel.show_choice(size_now, sample.scale, sample.crop, sample.source.size)
             panel.show_levels(prepared.histogram, sample.levels, sample.look_only, prepared.auto)
         self._workspace.set_look(sample.levels if sample.look_only else None)
         self._window.actions_by_name["crop"].setChecked(sample.crop is not None)
@@ -209,7 +213,3 @@ class Presenter(QObject):
             together = [each for each in self._window.gallery.strip.sources if isinstance(each, str)]
             open_files = [each for each in together or self._settings.recent if not is_project(each)]
             self._controller.tell_opened(tuple(open_files))
-
-    def _source_size(self) -> tuple[int, int]:
-        prepared = self._controller.prepared
-        return prepared.source_scaled.size if prepared is not None else (1, 1)

@@ -181,7 +181,8 @@ class PyramidDock(FramedDock):
             bool(self.scaling.currentData()),
             self.layout_choice.currentData(),
             columns,
-            self.theme.canvas,
+            # Bands are nearly white where they are zero, as the light theme's canvas is.
+            self.theme.canvas if self.theme.name == "dark" else self.theme.muted,
             None if editing else self._selected,
             editing,
             tuple(sorted(self._gains.items(), key=str)) if editing else (),
