@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import pytest
@@ -13,8 +14,9 @@ from PySide6.QtCore import Qt
 from tests.gui.conftest import wait_idle
 from texlab.docks import dock_classes
 from texlab.docks.base import Dock, Question
-from texlab.docks.frame import WORKING
+from texlab.docks.frame import WORKING, FramedDock
 from texlab.docks.host import DockHost
+from texlab.docks.recent import Recent
 from texlab.runs.slots import Slots
 from texlab.state.intentions import Tell
 from texlab.window.palette import CommandPalette
@@ -41,6 +43,39 @@ class Endless(Dock):
             self.ended.set()
 
         return Question(("endless",), compute)
+
+
+class Resting(Dock):
+    """Tells the seeds of the scenes that it was asked about, and then rests."""
+
+    name: ClassVar[str] = "resting"
+    title: ClassVar[str] = "Resting"
+    help: ClassVar[str] = ""
+    rest_ms: ClassVar[int] = 600_000
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.answers: list[int] = []
+
+    def question(self, scene: Any) -> Question:
+        return Question((scene.seed,), lambda should_stop: scene.seed)
+
+    def present(self, answer: int) -> None:
+        self.answers.append(answer)
+
+
+class Framed(FramedDock):
+    """Shows nothing of what it is answered."""
+
+    name: ClassVar[str] = "framed"
+    title: ClassVar[str] = "Framed"
+    help: ClassVar[str] = ""
+
+    def build(self) -> None:
+        self.recent = Recent(1)
+
+    def show_answer(self, answer: Any) -> None:
+        pass
 
 
 @pytest.fixture
@@ -94,6 +129,35 @@ def test_a_dock_that_comes_into_sight_shows_what_there_is(qtbot: Any, watch: Any
     watch.slots.release()
     qtbot.waitUntil(lambda: not host.busy)
     assert (dock.message is None) == asks
+
+
+def test_a_dock_rests_between_two_answers(qtbot: Any, watch: Any) -> None:
+    dock = Resting()
+    host, scene = watch(dock), everything()
+    dock.show()
+    on_screen(qtbot, dock)
+    host.show_scene(replace(scene, seed=1))
+    qtbot.waitUntil(lambda: dock.answers == [1])
+    # What comes while it rests waits for the end of the rest, and the newest alone is asked about.
+    for seed in (2, 3):
+        host.show_scene(replace(scene, seed=seed))
+        assert host.busy
+    assert (dock.answers, host._computing) == ([1], False)
+    host._rested.setRemainingTime(0)
+    host._rest.timeout.emit()
+    qtbot.waitUntil(lambda: dock.answers == [1, 3])
+
+
+@pytest.mark.parametrize("heavy", [False, True])
+def test_only_heavy_answers_go_when_they_are_out_of_date(qtbot: Any, monkeypatch: Any, heavy: bool) -> None:
+    monkeypatch.setattr(Framed, "heavy", heavy)
+    dock = Framed()
+    qtbot.addWidget(dock)
+    dock.recent.get("a", lambda: 1)
+    dock.present("an answer")
+    dock.forget()
+    kept = dock.recent.get("a", lambda: 2)
+    assert (dock.answer, dock.message, kept) == ((None, WORKING, 2) if heavy else ("an answer", None, 1))
 
 
 def test_nobody_waits_for_what_nobody_sees(qtbot: Any, watch: Any) -> None:

@@ -80,7 +80,6 @@ class Teacher(QObject):
         self._autosave = autosave
         self._hosts = hosts
         self._aside: Aside | None = None
-        self._first_id = 1
         self._opened: Opened | None = None
         self._wanted = OpenLesson("")
         # Counts how often another lesson was opened, or one was left.
@@ -110,6 +109,11 @@ class Teacher(QObject):
     def scene(self) -> LessonScene:
         """What there is to see of the lesson."""
         return self._scene
+
+    @property
+    def _first_id(self) -> int:
+        """Id of the lesson's first column: its columns are none of the user's."""
+        return 1 if self._aside is None else self._aside.state.next_id
 
     def carry_out(self, intention: Any) -> None:
         """Do what is intended; what cannot be done is said."""
@@ -161,8 +165,6 @@ class Teacher(QObject):
             self._aside = self._session.set_aside()
             self._tiled = self._window.actions_by_name["tile"].isChecked()
             self._autosave.hold(self._aside.state, self._aside.selected_id)
-            # Columns of the lesson are none of the user's.
-            self._first_id = self._aside.state.next_id
         self._opened = opened
         if self._wanted.own:
             self.desk.note(opened.name, opened.lesson)
