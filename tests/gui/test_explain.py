@@ -24,6 +24,7 @@ from texlab.docks.explain.de_bonet import (
 )
 from texlab.docks.explain.dock import INVITATION, ExplainDock
 from texlab.docks.explain.unexplained import EXPLAINED
+from texlab.docks.explain.words import Words
 from texlab.state.intentions import Pin, ShowMarks
 from texlab.state.scene import Probe
 from texlab.style.theme import DARK, LIGHT
@@ -458,3 +459,28 @@ def test_a_click_keeps_the_pixel_while_the_thresholds_change(explorer, qtbot):
     answered(qtbot, explorer)
     assert dock.message == INVITATION
     assert not pane._marks._lines["chosen", False]
+
+
+def test_words_end_with_an_ellipsis_where_they_have_no_room(qtbot):
+    """What is painted is whole lines: nothing of a line that has no room is seen."""
+    words = Words("w", "Words", 2)
+    qtbot.addWidget(words)
+    words.set_theme(LIGHT)
+    pictures = []
+    for text in ("one two three " * 40, "one two three"):
+        words.show_parts((text, "text"))
+        words.resize(200, words.sizeHint().height())
+        pictures.append(words.grab().toImage())
+    long, short = pictures
+    spacing = words.fontMetrics().lineSpacing()
+    background = short.pixel(0, short.height() - 1)
+
+    def inked(image, top, bottom):
+        return any(image.pixel(x, y) != background for x in range(image.width()) for y in range(top, bottom))
+
+    assert inked(long, spacing, 2 * spacing)
+    assert not inked(short, spacing, 2 * spacing)
+    assert not inked(long, 2 * spacing, long.height())
+    # The whole of it is told.
+    words.show_parts(("one two three " * 40, "text"))
+    assert words.accessibleDescription() == "one two three " * 40

@@ -581,3 +581,12 @@ def test_another_column_of_the_same_method_keeps_the_form(qtbot):
     assert view.form is None
     assert not view.reset_button.isEnabled()
     assert view.title.text() == "There is no column"
+
+
+def test_a_summary_has_room_for_its_lines_before_anything_is_painted(qtbot):
+    view = shown(qtbot, ParametersView(), 270, 500)
+    for name in ("heeger-bergen", "de-bonet", "mixture"):
+        method = methods()[name]
+        view.show_column(1, method, method.params())
+        assert view.summary.height() == view.summary.heightForWidth(view.summary.width())
+        assert view.summary.height() > 1.5 * view.summary.fontMetrics().lineSpacing()

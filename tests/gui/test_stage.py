@@ -39,6 +39,7 @@ from texlab.state.scene import ColumnScene, Past
 from texlab.state.session import Session
 from texlab.style.pictures import thinned
 from texlab.widgets.tables import make_quiet, table_text
+from texlab.window.panel_strip import FLOATING
 from texlab.window.stage_settings import SURROUNDS
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import methods
@@ -171,6 +172,11 @@ def test_a_click_on_a_name_opens_the_panels_and_another_closes_them(
     assert window.docks["maps"].height() > 0
     window.docks["maps"].setFloating(False)
     assert window.docks["maps"].maximumHeight() == 0
+    # One that nobody has seen has a size, too.
+    unseen = window.docks[next(name for name, host in explorer.hosts.items() if not host.is_made)]
+    unseen.setFloating(True)
+    assert unseen.height() >= FLOATING.height()
+    unseen.setFloating(False)
     window.raise_dock("steps")
     assert strip.is_open
     wait_idle(qtbot, explorer)

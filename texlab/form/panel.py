@@ -89,6 +89,8 @@ class ParametersView(QWidget):
             return
         self.title.setText(method.title)
         self.summary.setText(method.summary)
+        # Its lines have their room before anything is painted.
+        self._lay_out()
         form = self._forms.get(method.id)
         if form is None or not isinstance(params, type(form.params)):
             form = self._make_form(method)
@@ -113,6 +115,11 @@ class ParametersView(QWidget):
             old.deleteLater()
         self._forms[method.id] = form
         return form
+
+    def _lay_out(self) -> None:
+        layout = self.layout()
+        if layout is not None:
+            layout.activate()
 
     def _set_form(self, form: ParameterForm | None) -> None:
         old, self.form = self.form, form

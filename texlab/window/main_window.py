@@ -166,7 +166,7 @@ class MainWindow(QMainWindow):
         if not (state and self.restoreState(QByteArray(base64.b64decode(state)))) and first is not None:
             first.raise_()
         for dock in self.docks.values():
-            dock.topLevelChanged.connect(self.strip.refresh)
+            self.strip.follow(dock)
         self.strip.start()
 
     def _adopt_menus(self) -> None:

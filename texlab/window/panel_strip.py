@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, QSize, Qt, Signal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 LOW = 1200
 SHARE = 0.4
 LEAST = 120
+# A panel that floats is at least as large when it leaves the strip.
+FLOATING = QSize(480, 240)
 UNLIMITED = 16_777_215
 KEPT = "panels"
 
@@ -72,6 +74,16 @@ class PanelStrip(QObject):
     def toggle(self) -> None:
         """Open what is closed, close what is open."""
         self.set_open(not self._open)
+
+    def follow(self, dock: QDockWidget) -> None:
+        """Take note when a dock is let float, or comes back."""
+        dock.topLevelChanged.connect(lambda floats: self._floated(dock, floats))
+
+    def _floated(self, dock: QDockWidget, floats: bool) -> None:
+        self.refresh()
+        if floats and dock.height() < FLOATING.height():
+            # One that was never seen, or was only a name, has no height of its own.
+            dock.resize(dock.size().expandedTo(FLOATING))
 
     def refresh(self) -> None:
         """Let what was dragged out of the strip be seen, and what came into it not."""

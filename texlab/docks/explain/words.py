@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from texlab.style.theme import Theme
 
 Part = tuple[str, str]
+# What does not fit is in the tooltip.
+MORE = " \u2026"
 
 
 class Words(QWidget):
@@ -60,17 +62,25 @@ class Words(QWidget):
         return QSize(40, self.sizeHint().height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Paint the parts one after the other, word by word."""
+        """Paint the parts one after the other, word by word; what has no room gives way to an ellipsis."""
         painter = QPainter(self)
         metrics = self.fontMetrics()
-        left, base = 0.0, float(metrics.ascent())
-        for words, role in self._parts:
+        pieces = [(piece, role) for words, role in self._parts for piece in re.findall(r"\s*\S+|\s+", words)]
+        rows = max(1, self.height() // metrics.lineSpacing())
+        left, row = 0.0, 1
+        for place, (piece, role) in enumerate(pieces):
             painter.setPen(QColor(getattr(self._theme, role)))
-            for piece in re.findall(r"\s*\S+|\s+", words):
-                width = metrics.horizontalAdvance(piece)
-                if left and left + width > self.width():
-                    left, base = 0.0, base + metrics.lineSpacing()
-                    piece = piece.lstrip()
-                painter.drawText(QPointF(left, base), piece)
-                left += metrics.horizontalAdvance(piece)
+            rest = metrics.horizontalAdvance("".join(each for each, _ in pieces[place:])) if row == rows else 0
+            # In the last line there is room for the sign that something is left out, where it is needed.
+            room = self.width() - (metrics.horizontalAdvance(MORE) if left + rest > self.width() else 0)
+            if left and left + metrics.horizontalAdvance(piece) > room:
+                if row == rows:
+                    painter.drawText(QPointF(left, self._base(row)), MORE)
+                    break
+                left, row, piece = 0.0, row + 1, piece.lstrip()
+            painter.drawText(QPointF(left, self._base(row)), piece)
+            left += metrics.horizontalAdvance(piece)
         painter.end()
+
+    def _base(self, row: int) -> float:
+        return float(self.fontMetrics().ascent() + (row - 1) * self.fontMetrics().lineSpacing())
