@@ -59,7 +59,7 @@ def slow_magnitudes(plane: np.ndarray) -> list[np.ndarray]:
     radius = np.hypot(v, u)
     with np.errstate(divide="ignore"):
         octaves = np.log2(radius / 0.25)
-    radial = np.where(np.abs(octaves) < 1, 0.5 + 0.5 * np.cos(np.pi * np.clip(octaves, -1, 1)), 0)
+    radial = np.where(np.abs(octaves) < 1, np.cos(np.pi / 2 * np.clip(octaves, -1, 1)), 0)
     found = []
     for orientation in range(4):
         cosine = np.cos(np.arctan2(v, u) - orientation * np.pi / 4)
@@ -71,12 +71,9 @@ def slow_lags(magnitude: np.ndarray) -> np.ndarray:
     inner = magnitude[12:-12, 12:-12]
     inner = (inner - inner.mean()) / inner.std()
     found = np.empty((9, 9))
-    height, width = inner.shape
     for down in range(-4, 5):
         for across in range(-4, 5):
-            one = inner[max(0, down) : height + min(0, down), max(0, across) : width + min(0, across)]
-            other = inner[max(0, -down) : height + min(0, -down), max(0, -across) : width + min(0, -across)]
-            found[down, across] = np.mean(one * other)
+            found[down, across] = np.mean(inner * np.roll(inner, (down, across), axis=(0, 1)))
     return found
 
 
@@ -126,7 +123,7 @@ def test_b_is_the_mean_distance_to_the_nearest_block_under_the_exemplars_covaria
     distances = [
         min(math.sqrt((x - y) @ np.linalg.solve(steady, x - y)) for y in own.blocks) for x in other.blocks
     ]
-    expected = 1.3 * np.mean(distances) / math.sqrt(19)
+    expected = 1.4 * np.mean(distances) / math.sqrt(19)
     value = find_measure("block-distance").of(Subject.of_images(exemplar, image))
     assert value == pytest.approx(expected, rel=1e-4)
 

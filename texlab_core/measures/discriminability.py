@@ -35,7 +35,7 @@ COLOUR_WEIGHT = 3.0
 # Share of the covariance, share of its diagonal, and what is added to the diagonal.
 SHRINKAGE = (0.9, 0.1, 0.01)
 # Makes b span the range that it has with hardly any constant on the diagonal, so that limits stay where they were.
-SCALE = 1.3
+SCALE = 1.4
 SMALLEST = BLOCK + STEP
 _MOST_BLOCKS = 4096
 _FLOOR = 1e-10
@@ -149,19 +149,15 @@ def _sums(running: NDArray[np.float64], length: int, starts: NDArray[np.int64]) 
 
 
 def magnitude_lags(magnitude: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the autocorrelation (9, 9) of standardized values by lag 0 .. 4, -4 .. -1, over all pairs in each."""
+    """Return the autocorrelation (9, 9) of standardized values by lag 0 .. 4, -4 .. -1; opposite borders meet."""
     from scipy import fft
 
     values = magnitude - np.float32(magnitude.mean(dtype=np.float64))
     values /= np.float32(max(math.sqrt(float(np.mean(np.square(values), dtype=np.float64))), 1e-6))
-    # Zeros as wide as the largest lag keep opposite borders apart.
-    shape = tuple(fft.next_fast_len(side + LAGS, real=True) for side in values.shape)
-    spectrum = fft.rfft2(values, s=shape)
+    spectrum = fft.rfft2(values)
     power = np.square(spectrum.real) + np.square(spectrum.imag)
     lag = np.concatenate([np.arange(LAGS + 1), np.arange(-LAGS, 0)])
-    sums = fft.irfft2(power, s=shape)[np.ix_(lag, lag)]
-    pairs = np.outer(values.shape[0] - np.abs(lag), values.shape[1] - np.abs(lag))
-    return np.asarray(sums / pairs, np.float64)
+    return np.asarray(fft.irfft2(power, s=values.shape)[np.ix_(lag, lag)] / values.size, np.float64)
 
 
 def nearest_blocks(

@@ -30,9 +30,9 @@ def oriented_bands(
 ) -> Iterator[tuple[int, int, Complex]]:
     """Split the periodic part of a plane (H, W) into analytic bands.
 
-    Octave k is centred at 2^-k / 4 cycles per pixel, a raised cosine in log frequency that ends one octave to each
-    side; orientation o is cos^3 around 45 o degrees, over half of the Fourier plane. Only those are computed whose
-    (octave, orientation) is ``wanted``.
+    Octave k is centred at 2^-k / 4 cycles per pixel, a half-wave of a cosine in log frequency that ends one octave
+    to each side: energies of neighbouring octaves add up. Orientation o is cos^3 around 45 o degrees, over half of
+    the Fourier plane. Only those are computed whose (octave, orientation) is ``wanted``.
 
     Yields
     ------
@@ -76,7 +76,7 @@ def _filters(size: tuple[int, int], octave: int) -> Iterator[NDArray[np.float32]
     radius = np.hypot(v[:, None], u)
     radius[0, 0] = 1
     octaves = np.clip(np.log2(radius * (2**octave / FINEST)), -1, 1)
-    radial = np.square(np.cos(np.pi / 2 * octaves))
+    radial = np.cos(np.pi / 2 * octaves)
     radial[0, 0] = 0
     # Twice: one half of the plane carries what both did. Fewer samples: the inverse transform divides by fewer.
     radial *= 2 * math.prod(small) / math.prod(size)
