@@ -205,7 +205,7 @@ RULES: tuple[Rule, ...] = (
         "structure-lost",
         _D,
         reasons=("structure-lost",),
-        target=0.94,
+        target=0.93,
     ),
     _rule(
         "dependence-lost.bands-alone",
