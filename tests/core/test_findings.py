@@ -153,6 +153,21 @@ def test_a_tiling_repeats_and_is_cut_where_it_is_laid_together() -> None:
     )
 
 
+def test_a_cut_is_certain_only_where_it_jumps_further_than_the_exemplars_own_lines() -> None:
+    for texture, certainty in (("stochastic-gravel", FINDING), ("quasiperiodic-brick", LOOK_AT)):
+        exemplar = as_exemplar(f"gallery:{texture}", crop=Crop(0, 0, 96, 96))
+        subject = Subject(image=np.tile(exemplar.pixels, (2, 2, 1)), exemplar=exemplar)
+        further = find_measure("cuts").of(subject) > find_measure("own-cuts").of(subject)
+        assert further == (certainty == FINDING)
+        assert seen(subject)["cuts"].certainty == certainty
+    # What the limits for De Bonet's shifts are from has such exemplars, too.
+    shift = methods()["de-bonet"].params(coarsest="shift", alpha=0.3)
+    bricks = labelled("quasiperiodic-brick", "de-bonet-30", "de-bonet")
+    assert find_measure("cuts").of(bricks) < find_measure("own-cuts").of(bricks)
+    assert seen(bricks, shift)["cuts"].certainty == FINDING
+    assert seen(labelled("quasiperiodic-brick", "de-bonet-30"))["cuts"].certainty == LOOK_AT
+
+
 def test_a_cut_is_where_copies_meet_though_other_lines_jump_more() -> None:
     """Bricks have joints that jump more than any cut; the labelled cuts are in the middle."""
     shift = methods()["de-bonet"].params(coarsest="shift", alpha=0.3)

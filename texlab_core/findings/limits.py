@@ -182,8 +182,7 @@ def _set(name: str, *terms: Term, limit: float, **more: object) -> Rule:
     return Rule(name=name, terms=terms, fit=Fit((float(term.sign),), term.sign * term.of(limit)), **more)  # type: ignore[arg-type]
 
 
-_D, _LAID = Term("discriminability"), Term("laid-down-share", -1)
-_LAID_DOWN = Term("laid-down-share")
+_D, _LAID_DOWN = Term("discriminability"), Term("laid-down-share")
 _BACK = Term("block-distance-back", 1, 0.05)
 _SPECKS, _NEW = Term("specks", 1, 0.002), Term("palette-distance", 1, 0.1)
 _ODD, _EMPTY = Term("odd-blocks", 1, 0.05), Term("empty-share", 1, 0.01)
@@ -230,7 +229,16 @@ RULES: tuple[Rule, ...] = (
         reasons=("straight-cuts",),
         target=0.94,
     ),
-    _rule("cuts", Term("cuts", 1, 1.0), Term("own-cuts", -1, 1.0), _LAID, reasons=("straight-cuts",), target=0.8),
+    _rule(
+        "cuts",
+        Term("cuts", 1, 1.0),
+        _LAID_DOWN,
+        Term("exemplar-drift", 1, 0.02),
+        _SPECKS,
+        Term("spectral-variation"),
+        reasons=("straight-cuts",),
+        target=0.93,
+    ),
     _rule("repetition", _LAID_DOWN, Term("exemplar-period"), reasons=("repetition",), target=0.8),
     _rule(
         "verbatim.de-bonet",

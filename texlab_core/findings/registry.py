@@ -70,12 +70,16 @@ class Case:
 
 @dataclass(frozen=True)
 class Seen:
-    """What a detector saw: one sentence with its number, where, and a remedy where it depends on the values."""
+    """What a detector saw: one sentence with its number, where, and a remedy where it depends on the values.
+
+    A ``hint`` only says "look at", however sure the detector's rule is: the rule said nothing.
+    """
 
     what: str
     where: Where
     remedy: Remedy | None = None
     measures: tuple[str, ...] = ()
+    hint: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +146,7 @@ class Detector:
             where=seen.where,
             why=self.why.get(case.method, self.why[OTHER]),
             remedy=seen.remedy or self._remedy(case),
-            certainty=self.certainty if rule is None else rule.certainty,
+            certainty=LOOK_AT if seen.hint else self.certainty if rule is None else rule.certainty,
             measures=seen.measures or self.measures,
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from texlab_core.findings.finding import LOOK_AT, Region, Where
+from texlab_core.findings.finding import Region, Where
 from texlab_core.findings.regions import along
 from texlab_core.findings.registry import Case, Detector, Seen, register
 from texlab_core.findings.remedies import multiply, put, say
@@ -17,9 +17,17 @@ PLAIN = 2.0
 
 def _plain(case: Case) -> bool:
     """Whether a line jumps far beyond the exemplar's own: only a hint, for no labels are of such results."""
+    if case.rule is not None and case.rule.methods:
+        return False
     cut, own = case.value("cuts"), case.value("own-cuts")
-    hint = case.rule is None or case.rule.certainty == LOOK_AT
-    return hint and cut is not None and own is not None and cut >= max(PLAIN * own, LIMITS["cuts"].bad)
+    return cut is not None and own is not None and cut >= max(PLAIN * own, LIMITS["cuts"].bad)
+
+
+def _usual(case: Case) -> bool:
+    """Whether the exemplar has larger lines, in results unlike those that the limits for one method are from."""
+    cut, own = case.value("cuts"), case.value("own-cuts")
+    of_all = case.rule is None or not case.rule.methods
+    return of_all and (cut is None or own is None or cut < own)
 
 
 def _cuts(case: Case) -> Seen | None:
@@ -39,6 +47,7 @@ def _cuts(case: Case) -> Seen | None:
         "largest "
         f"line by {case.text('own-cuts')}.",
         where,
+        hint=not labelled or _usual(case),
     )
 
 
@@ -80,7 +89,16 @@ register(
         id="cuts",
         title="Straight cuts",
         summary="The picture breaks along a straight line.",
-        measures=("cuts", "own-cuts", "palette-distance", "odd-blocks", "exemplar-drift", "laid-down-share"),
+        measures=(
+            "cuts",
+            "own-cuts",
+            "laid-down-share",
+            "specks",
+            "spectral-variation",
+            "palette-distance",
+            "odd-blocks",
+            "exemplar-drift",
+        ),
         see=_cuts,
         why={
             "": "Pieces were laid side by side that do not continue one another.",
