@@ -3,15 +3,13 @@
 Other programs do not count: on two free cores, two processes take half of what parent and processes need together.
 Where no other program runs, the clock says it too, here for all of De Bonet's textures:
 
-    python tests/benchmarks/bench_batch.py 800
+    python -m tests.benchmarks.bench_batch 800
 """
 
 from __future__ import annotations
 
 import json
-import os
 import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,24 +18,18 @@ from typing import Any
 
 import pytest
 
+from tests.core.batch_tools import run_python
+
 pytestmark = pytest.mark.benchmark
 
-ROOT = Path(__file__).resolve().parents[2]
 FEW, MANY = 40, 160
 
 
 def run(jobs: int, processes: int, folder: Path) -> dict[str, Any]:
     """Run jobs of De Bonet's 800 in a process of their own; return its figures."""
     start = time.monotonic()
-    done = subprocess.run(
-        [sys.executable, __file__, str(jobs), str(processes), str(folder)],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=True,
-        timeout=1200,
-    )
+    done = run_python(__file__, jobs, processes, folder, timeout=1200)
+    assert done.returncode == 0, done.stderr
     return json.loads(done.stdout) | {"wall_s": time.monotonic() - start}
 
 

@@ -1,4 +1,4 @@
-"""The laboratory's figures that follow the pointer: pictures a second at 256 x 256. Judges nothing."""
+"""The laboratory's figures that follow the pointer: pictures a second at 256 x 256."""
 
 from __future__ import annotations
 
@@ -43,8 +43,10 @@ def test_live_figures() -> None:
         "bank at one scale, 512": lambda: spots_bars.scaled_responses(np.tile(plane, (2, 2)), 2.0),
     }
     unit = fourier_pair()
-    print("\n256 x 256, CPU time; live figures should reach 30 a second")
+    print("\n256 x 256, CPU time; live figures reach 30 a second")
     print("figure                             ms   in units   a second")
     for name, work in (live | once).items():
         took = cpu(work, 7)
         print(f"{name:30} {took * 1e3:7.2f} {took / unit:10.1f} {1 / took:10.0f}")
+        # A thirtieth of a second is about 88 units; what is asked for once may take about a second.
+        assert took < (60 if name in live else 1500) * unit

@@ -132,7 +132,7 @@ def test_a_screenshot_that_finds_no_room_leaves_what_was_there(tmp_path: Path) -
         "    write(path, data)\n"
         "whole.write_whole = limited\nsys.exit(main(sys.argv[1:]))"
     )
-    command = [sys.executable, "-c", limited, "screenshot", "--size", "900x700", "--out"]
+    command = [sys.executable, "-c", limited, "screenshot", "--size", "900x700", "--columns", "tiling", "--out"]
     done = subprocess.run(
         [*command, str(out)],
         capture_output=True,

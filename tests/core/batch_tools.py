@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +18,24 @@ from texlab_core.work.threads import SUM_VARIABLES
 if TYPE_CHECKING:
     from texlab_core.engine.result import Result
 
+ROOT = Path(__file__).resolve().parents[2]
 # What differs from run to run, and what belongs to no job.
 NOT_COMPARED = {"times.csv", ".texlab-batch.lock"}
+
+
+def run_python(
+    *arguments: object, folder: Path | None = None, timeout: float = 240
+) -> subprocess.CompletedProcess[str]:
+    """Run Python in a process of its own that knows the project, may be killed or start processes."""
+    return subprocess.run(
+        [sys.executable, "-W", "ignore", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=folder or ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=False,
+        timeout=timeout,
+    )
 
 
 def photos(folder: Path, count: int = 3) -> None:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from functools import partial
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
-from tests.core.batch_tools import die_at_first, die_when_large, files_of, shape_of, small_plan, sum_variables
+from tests.core.batch_tools import (
+    die_at_first,
+    die_when_large,
+    files_of,
+    run_python,
+    shape_of,
+    small_plan,
+    sum_variables,
+)
 from texlab_core.batch import cluster
 from texlab_core.batch.cluster import Cluster
 from texlab_core.batch.places import InProcess
@@ -22,25 +28,14 @@ from texlab_core.engine.job import Job
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
 
-ROOT = Path(__file__).resolve().parents[2]
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def jobs(sizes: tuple[int, ...] = (4, 5, 6, 7), **changes: Any) -> list[Job]:
     exemplar = as_exemplar(np.random.Generator(np.random.PCG64(1)).random((12, 12, 3), np.float32))
     given: dict[str, Any] = {"method": "tiling", "inputs": {"exemplar": exemplar}} | changes
     return [Job(**given, size=(size, 9)) for size in sizes]
-
-
-def run_script(code: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """Run Python code in a process of its own, which may be killed or start a cluster."""
-    return subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", code, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        check=False,
-        timeout=240,
-    )
 
 
 # The n-th time that the process asks for a file to be on the disk, or renames one, is its last.
@@ -80,7 +75,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_files(tmp_path: Path) -> No
     moments = [("fsync", 3), ("replace", 3), ("replace", 4), ("fsync", 11), ("replace", 16)]
     made = []
     for number, (moment, count) in enumerate(moments):
-        done = run_script(KILLED, tmp_path / "killed", moment, count, 2 if number == 2 else 0)
+        done = run_python("-c", KILLED, tmp_path / "killed", moment, count, 2 if number == 2 else 0)
         assert done.returncode == -9, done.stderr
         made.append(len(list((tmp_path / "killed" / "out" / "records").glob("*.json"))))
     assert made == sorted(made)
@@ -126,7 +121,7 @@ def test_one_process_two_and_a_cluster_that_loses_a_worker_give_the_same_files(t
     wanted = files_of(tmp_path / "one" / "out")
     run_batch(small_plan(tmp_path / "two"), tmp_path / "two" / "out", place=Processes(2))
     assert files_of(tmp_path / "two" / "out") == wanted
-    done = run_script(ON_CLUSTER, tmp_path / "cluster")
+    done = run_python("-c", ON_CLUSTER, tmp_path / "cluster")
     assert done.stdout == "made 12\n", done.stderr
     assert files_of(tmp_path / "cluster" / "out") == wanted
 
@@ -181,7 +176,7 @@ def test_a_process_starts_no_threads_for_sums() -> None:
     assert found == {"1"}
     assert dict(os.environ) == before
     # They are read when NumPy is loaded.
-    done = run_script("import sys, texlab_core.batch.child; print('numpy' in sys.modules)")
+    done = run_python("-c", "import sys, texlab_core.batch.child; print('numpy' in sys.modules)")
     assert done.stdout == "False\n", done.stderr
 
 
@@ -238,15 +233,7 @@ run_batch(small_plan(folder, methods=["tiling"]), folder / "out", place=Processe
 def test_a_script_that_every_process_would_run_again_is_told_so_at_once(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED, "utf-8")
-    done = subprocess.run(
-        [sys.executable, "-W", "ignore", str(script), str(tmp_path)],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=False,
-        timeout=240,
-    )
+    done = run_python(script, tmp_path, folder=tmp_path)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1] == f"texlab_core.errors.InputError: {UNBORN}"
     # Each of the first processes fails once, and no other one is started.

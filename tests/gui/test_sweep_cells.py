@@ -42,13 +42,18 @@ def test_a_click_takes_a_cell_as_one_step(qtbot, bench):
     qtbot.waitUntil(lambda: dock.sheet.canvas.marked is None, timeout=PATIENCE_MS)
 
 
-def test_a_varied_seed_is_taken_in_the_same_step(qtbot, bench):
-    here = bench()
-    dock = here.dock
+def take_seed_3_and_wrap(qtbot, dock):
+    """Vary the seed and the border, and click the cell of the third seed and the other border."""
     set_range(qtbot, dock.panel.across, "seed", "1", "4", "4")
     choose(qtbot, dock.panel.down.knob, "border")
     complete(qtbot, dock)
     click_cell(qtbot, dock, 6)
+
+
+def test_a_varied_seed_is_taken_in_the_same_step(qtbot, bench):
+    here = bench()
+    dock = here.dock
+    take_seed_3_and_wrap(qtbot, dock)
     assert here.session.state.seed == 3
     assert here.params.border == "wrap"
     qtbot.waitUntil(lambda: not here.controller.busy, timeout=PATIENCE_MS)
@@ -62,10 +67,7 @@ def test_a_varied_seed_is_that_of_a_column_with_its_own(qtbot, bench):
     here = bench()
     dock = here.dock
     here.session.set_column_seed(1, 9)
-    set_range(qtbot, dock.panel.across, "seed", "1", "4", "4")
-    choose(qtbot, dock.panel.down.knob, "border")
-    complete(qtbot, dock)
-    click_cell(qtbot, dock, 6)
+    take_seed_3_and_wrap(qtbot, dock)
     assert (here.session.state.seed, here.session.state.column(1).seed) == (5, 3)
     qtbot.waitUntil(lambda: dock.sheet.canvas.marked == 6, timeout=PATIENCE_MS)
 
