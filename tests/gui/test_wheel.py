@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mouse import on_screen
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
@@ -67,7 +68,7 @@ def test_without_the_keyboard_the_panel_scrolls(qtbot: Any, kind: str) -> None:
     panel = Panel(control)
     qtbot.addWidget(panel)
     panel.show()
-    qtbot.waitExposed(panel)
+    on_screen(qtbot, panel)
     panel.activateWindow()
     panel.other.setFocus()
 
