@@ -155,6 +155,15 @@ def test_a_picture_of_a_drag_is_measured_when_no_other_follows(runner: Any, monk
         now[0] -= after
 
 
+def test_an_earlier_result_is_shown_until_there_is_a_picture(runner: Any) -> None:
+    first, second = (np.full((8, 6, 3), value, np.uint8) for value in (1, 2))
+    runner.show_stored(first, {"d": 1.0})
+    assert runner.scene.picture is first
+    assert (dict(runner.scene.measures), runner.scene.measured_size) == ({"d": 1.0}, (8, 6))
+    runner.show_stored(second, {})
+    assert runner.scene.picture is first
+
+
 def test_what_a_drag_makes_is_not_kept_as_a_result(runner: Any) -> None:
     start(runner, draft=True)
     # At full size it has the job of the result, but neither its stages nor a state to go on from.
