@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint
-from PySide6.QtGui import QContextMenuEvent
-from PySide6.QtWidgets import QApplication, QMainWindow, QMenu
+from PySide6.QtGui import QContextMenuEvent, QPixmapCache
+from PySide6.QtWidgets import QApplication, QComboBox, QMainWindow, QMenu, QWidget
 
 import texlab
 from tests.gui.conftest import ids, make_everything, wait_idle
+from tests.soak.census import malloc_in_use
 from texlab.docks.recent import Recent, Same
 from texlab.runs import kept_points
 from texlab.runs.kept_points import KeptPoints
@@ -25,6 +26,7 @@ from texlab.state.chosen import Sample
 from texlab.state.scene import ColumnScene
 from texlab.state.session import Session
 from texlab.style.pictures import to_picture
+from texlab.style.theme import LIGHT, apply_theme
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
@@ -168,6 +170,29 @@ def test_what_comes_and_goes_leaves_no_object_and_a_closed_window_none(
 
 
 # What is kept is bounded.
+
+
+def test_pictures_of_boxes_that_have_gone_are_few(qapp: Any) -> None:
+    if not malloc_in_use():
+        pytest.skip("another C library")
+    apply_theme(qapp, LIGHT)
+
+    def draw(kind: type[QWidget], count: int) -> None:
+        """Draw so many that differ, and let them go."""
+        for place in range(count):
+            box = kind()
+            box.resize(200 + place % 97, 60 + place // 97)
+            box.grab()
+            box.deleteLater()
+        settle()
+        gc.collect()
+
+    draw(QComboBox, 1)
+    QPixmapCache.clear()
+    before = malloc_in_use()
+    draw(QComboBox, 400)
+    # By itself Qt keeps 10 MB of them.
+    assert malloc_in_use() - before < 5 * 2**20
 
 
 def test_recent_values_are_bounded_in_number_as_well_as_in_weight() -> None:

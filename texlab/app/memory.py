@@ -13,7 +13,7 @@ from texlab.runs.worker import Worker
 # Less than this is not worth the milliseconds in which nobody else gets memory.
 STEP_BYTES = 24 * 2**20
 # Filters of pictures of ordinary size are worth keeping at rest too.
-FILTERS_BYTES = 24 * 2**20
+FILTERS_BYTES = 8 * 2**20
 
 
 def memory_bytes() -> int | None:

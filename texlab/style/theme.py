@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtGui import QColor, QGuiApplication, QPalette
+from PySide6.QtGui import QColor, QGuiApplication, QPalette, QPixmapCache
 
 from texlab.style.text_size import sentence_points
 
@@ -38,6 +38,9 @@ class Theme:
     canvas: str
     grid: str
 
+
+# Fusion keeps a picture of every button and box that it drew, by size and palette, also of those that have gone.
+DRAWN_KB = 2048
 
 LIGHT = Theme(
     name="light",
@@ -198,6 +201,7 @@ def apply_theme(application: QApplication, theme: Theme) -> None:
     if application.property("texlab-style") is None:
         # Once: every further style would stay in memory.
         application.setStyle("Fusion")
+        QPixmapCache.setCacheLimit(DRAWN_KB)
         application.setProperty("texlab-style", True)
     application.setPalette(palette(theme))
     # Fusion outlines check boxes with the darkened window colour, which a dark theme swallows.
