@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication, QToolButton, QWidget
 
 from texlab.state.lesson_scene import NO_LESSON, LessonScene
 from texlab.style.numbers import clock_text
+from texlab.style.theme import LIGHT, set_text_size
 from texlab.window.commands import make_actions
 from texlab.window.notes_window import CONTROLS, NotesWindow
 from texlab_core.lessons.shelf import bundled
@@ -86,15 +87,22 @@ def test_its_controls_and_keys_are_those_of_the_window(
 
 
 def test_text_keeps_its_size_when_the_audience_s_grows(qapp: Any, notes: NotesWindow) -> None:
-    notes.set_open(True)
-    before = qapp.font()
-    large = qapp.font()
-    large.setPointSizeF(40)
-    qapp.setFont(large)
+    before = qapp.font().pointSizeF()
     try:
-        assert {label.font().pointSizeF() for label in notes.words.values()} == {11.0}
+        # It may be opened while the audience reads large text, and words come later, with their step.
+        set_text_size(qapp, 30.0, LIGHT)
+        notes.set_open(True)
+        for points, seen in ((40.0, ("note",)), (60.0, ("note", "question")), (before, tuple(notes.words))):
+            set_text_size(qapp, points, LIGHT)
+            for name in seen:
+                notes.words[name].setText("Said by the teacher.")
+                notes.words[name].show()
+            QApplication.processEvents()
+            assert {label.font().pointSizeF() for label in notes.words.values()} == {11.0}
+            assert notes.next.font().pointSizeF() == 11.0
+            assert notes.sentence.font().pointSizeF() == pytest.approx(11.0 * 1.4)
     finally:
-        qapp.setFont(before)
+        set_text_size(qapp, before, LIGHT)
 
 
 class _Screen:

@@ -167,6 +167,13 @@ def test_in_teach_a_step_has_the_room_that_it_needs(qtbot: Any, explorer: Explor
     assert workspace.shown_ids == tuple(ids(explorer))
     assert len(workspace.shown_ids) == 2
     assert not workspace.exemplar.isHidden()
+    # The presenter's words keep their size.
+    notes = explorer.teach_mode.notes
+    notes.set_open(True)
+    QApplication.processEvents()
+    assert {label.font().pointSizeF() for label in notes.words.values()} == {notes.next.font().pointSizeF()}
+    assert notes.words["note"].isVisible()
+    assert notes.next.font().pointSizeF() < window.font().pointSizeF()
     # Without exemplar and columns the tab has all the room, and the sentence has its lines.
     qtbot.keyClick(window, Qt.Key.Key_PageDown)
     wait_idle(qtbot, explorer)

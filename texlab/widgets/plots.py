@@ -123,7 +123,7 @@ class Plot(QWidget):
         metrics = self.fontMetrics()
         is_low = self.height() < ROOM_FOR_LABELS * text_scale(self)
         # An axis is as long as the plot without the numbers of the other one.
-        rooms = self.width() - 5 * metrics.averageCharWidth(), self.height() - 2 * metrics.height()
+        rooms = self.width() - 7 * metrics.averageCharWidth(), self.height() - 2 * metrics.height()
         for side, words, room in zip(("bottom", "left"), self._labels, rooms, strict=True):
             self.axes[side].showLabel(bool(words) and not is_low and metrics.horizontalAdvance(words) <= room)
 

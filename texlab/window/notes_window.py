@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QElapsedTimer, QSize, Qt, QTime, QTimer
@@ -16,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from texlab.style.numbers import clock_text
+from texlab.style.text_size import follow_text
 from texlab.widgets.flow_layout import FlowLayout
 from texlab.widgets.plain import Label
 
@@ -112,10 +114,8 @@ class NotesWindow(QWidget):
         layout.addWidget(bar)
         # A style sheet keeps them from taking the font of the window.
         for part in self.findChildren(QWidget):
-            part.setFont(own)
-        large = self.font()
-        large.setPointSizeF(points * SENTENCE_FACTOR)
-        self.sentence.setFont(large)
+            size = points * SENTENCE_FACTOR if part is self.sentence else points
+            follow_text(part, partial(_keep_size, part, size))
         self.resize(SIZE)
 
     def show_lesson(self, lesson: LessonScene) -> None:
@@ -190,6 +190,13 @@ class NotesWindow(QWidget):
         """Close it: the audience's window stays."""
         super().closeEvent(event)
         self._action.setChecked(False)
+
+
+def _keep_size(part: QWidget, points: float) -> None:
+    font = part.font()
+    if font.pointSizeF() != points:
+        font.setPointSizeF(points)
+        part.setFont(font)
 
 
 def _label(name: str, role: str) -> Label:

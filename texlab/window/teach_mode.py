@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 EXEMPLAR = 0
 # The presenter stands nearer than the first row.
 NOTES_FACTOR = 1.2
-# So many columns of a step stand side by side.
-MOST_BESIDE = 4
+# The columns of a step stand side by side as long as each has room for so many letters.
+LETTERS = 26
 # Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
 SHOW_ALL = ("lab", "lessons")
 SHARE_WITHOUT_COLUMNS = 0.6
@@ -149,7 +149,8 @@ class TeachMode(QObject):
     def _make_room(self, step: LessonStep) -> None:
         columns = [column.id for column in self._session.state.columns]
         self._hidden.clear()
-        self._kept = set(columns) if 1 < len(columns) <= MOST_BESIDE else set()
+        room = self._window.width() // (LETTERS * self._window.fontMetrics().averageCharWidth())
+        self._kept = set(columns) if 1 < len(columns) < room else set()
         # Experiments and drawings show the exemplar themselves, where there is one.
         alone = not columns and (step.exemplar is None or _tab_of(step) in SHOW_ALL)
         self._window.actions_by_name["tab-alone"].setChecked(alone)
