@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from texlab_core.figures import _stated
 from texlab_core.figures._stated import STATED, place
 from texlab_core.files.resources import resource
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
+from texlab_core.methods.efros_leung.windows import FULL_SPREAD, effective_tau
 from texlab_core.popout.scoring import wilson
 
 if TYPE_CHECKING:
@@ -40,6 +43,19 @@ def test_every_place_is_in_its_page_once_and_belongs_to_the_command() -> None:
     for name in {each.page for each in STATED}:
         marked = set(re.findall(r"<!-- end of (.*?) -->", page(name))) - {"defaults"}
         assert marked == {each.name for each in STATED if each.page == name}
+
+
+def test_tau_of_little_contrast() -> None:
+    words = page("efros-leung")
+    found = re.search(r"evenly over (\d+) of 255 gray levels gets a tau of ([\d.]+) instead of (\d+)", words)
+    assert found is not None
+    levels, tau, usual = int(found[1]), float(found[2]), float(found[3])
+    pixels = np.tile(np.arange(levels) + 100, (levels, 1))[..., None].astype(np.float32) / 255
+    params = EfrosLeungParams()
+    assert params.tau == usual
+    got = effective_tau(usual, "relative", params.criterion, pixels)
+    assert round(got, 2) == tau
+    assert float(re.search(r"spread by (\d+) gray", words)[1]) == FULL_SPREAD  # type: ignore[index]
 
 
 # A part of each is measured anew: machines differ in the last digits, and by a texture's details.
