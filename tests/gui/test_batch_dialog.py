@@ -135,7 +135,7 @@ def test_a_batch_is_stopped_and_goes_on(explorer: Any, qtbot: Any, photos: Path,
     dialog.inputs.setPlainText(str(photos))
     dialog.out.setText(str(tmp_path / "out"))
     dialog.sizes.setText("16x12")
-    dialog.seeds.setValue(200)
+    dialog.seeds.setValue(2000)
     dialog.processes.setValue(1)
     qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: dialog.bar.value() > 0)
@@ -143,7 +143,7 @@ def test_a_batch_is_stopped_and_goes_on(explorer: Any, qtbot: Any, photos: Path,
     assert dialog.message.text() == "Stopped; run it again to go on."
     qtbot.waitUntil(lambda: not explorer.handlers.batches.busy)
     made = len(list((tmp_path / "out" / "records").iterdir()))
-    assert 0 < made < 400
+    assert 0 < made < 4000
     dialog.seeds.setValue(1)
     qtbot.mouseClick(dialog.run_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: dialog.page_button.isEnabled())
