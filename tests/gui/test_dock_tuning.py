@@ -166,6 +166,7 @@ def test_trials_of_a_search_are_drawn_together(qtbot):
     assert show(0, "idle") == 0
     # The first one at once, those that follow in one go.
     assert show(1) == 1
+    assert dock.status.text() == "1 run so far"
     assert [show(count) for count in (2, 3, 5)] == [1, 1, 1]
     assert dock.status.text() == "5 runs so far"
     dock._redraw.timeout.emit()
@@ -260,7 +261,7 @@ def test_stop_keeps_the_points(qtbot, bench, monkeypatch):
     qtbot.mouseClick(dock.stop_button, Qt.MouseButton.LeftButton)
     assert isinstance(bench.intended[-1], StopTuning)
     qtbot.waitUntil(lambda: bench.controller.scene().tuning.status == "stopped", timeout=PATIENCE_MS)
-    qtbot.waitUntil(lambda: dock.status.text().startswith("Stopped after 1 runs"), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: dock.status.text().startswith("Stopped after 1 run;"), timeout=PATIENCE_MS)
     assert len(groups_of(bench.controller.scene())[0].cells) == 1
 
 

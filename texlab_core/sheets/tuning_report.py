@@ -91,7 +91,7 @@ class Tuning:
     def sentence(self) -> str:
         """What was found, in one or two sentences."""
         kept, gained = find_measure(KEPT), find_measure(GAINED)
-        runs = f"{len(self.trials)} runs"
+        runs = f"{len(self.trials)} run{'' if len(self.trials) == 1 else 's'}"
         if not self.changes:
             return (
                 f"In {runs} nothing made more that is new with {kept.title} at most {kept.text(self.limit)} than"

@@ -231,9 +231,9 @@ class TuningDock(FramedDock):
         self.progress.setValue(round(1000 * shown.fraction))
         words = shown.problem or ("" if shown.found is None else shown.found.sentence)
         if shown.running:
-            words = f"{len(shown.cells)} runs so far"
+            words = f"{_runs(len(shown.cells))} so far"
         elif shown.status == "stopped":
-            words = f"Stopped after {len(shown.cells)} runs; click a point to take it"
+            words = f"Stopped after {_runs(len(shown.cells))}; click a point to take it"
         self.status.setText(words)
         set_tip(self.status, words)
 
@@ -285,3 +285,7 @@ def _same_but_tuning(scene: Scene, other: Scene) -> bool:
         and scene.selected_id == other.selected_id
         and all(getattr(scene, name) is getattr(other, name) for name in ("points", "sweep", "exemplar"))
     )
+
+
+def _runs(count: int) -> str:
+    return f"{count} run{'' if count == 1 else 's'}"

@@ -145,7 +145,10 @@ def settings(params: Params) -> str:
         value = getattr(params, each.name)
         if value != each.default:
             cells = getattr(value, "cells", None)
-            named.append(f"{len(cells)} cells set" if cells is not None else f"{each.label} {show(value)}")
+            if cells is None:
+                named.append(f"{each.label} {show(value)}")
+            else:
+                named.append(f"{len(cells)} cell{'' if len(cells) == 1 else 's'} set")
     more = f" and {len(named) - MOST_NAMED} more" if len(named) > MOST_NAMED else ""
     return ", ".join(named[:MOST_NAMED]) + more or "the defaults"
 
