@@ -148,6 +148,8 @@ TWO: dict[str, Any] = SMALL | {
             "sentence": "A circle becomes an ellipse: the short axis is the tilt, the ratio the slant's cosine.",
             "tab": {"name": "lab", "settings": {"experiments": "lab-plane", "plane-slant": 20}},
         },
+        {"sentence": "Three.", "note": "The third step."},
+        {"sentence": "Four.", "note": "The fourth step."},
     ],
 }
 
@@ -182,7 +184,12 @@ def test_in_teach_a_step_has_the_room_that_it_needs(qtbot: Any, explorer: Explor
     assert not workspace.isVisible()
     assert lab.dock.page.slant.value() == 20
     assert cut(window, painted(window)) == []
-    qtbot.keyClick(window, Qt.Key.Key_PageUp)
+    # A step without a tab has its words in front, also when nothing else is left of that tab.
+    for text in ("The third step.", "The fourth step."):
+        qtbot.keyClick(window, Qt.Key.Key_PageDown)
+        qtbot.waitUntil(lambda text=text: explorer.hosts["lessons"].dock.words.note.text() == text)
+    for _ in range(3):
+        qtbot.keyClick(window, Qt.Key.Key_PageUp)
     wait_idle(qtbot, explorer)
     qtbot.waitUntil(workspace.isVisible)
     qtbot.waitUntil(lambda: window.docks["histograms"].height() < 0.6 * window.height())

@@ -185,7 +185,7 @@ class DockHost(QObject):
     def seen(self) -> bool:
         """Whether any part of the dock can be seen: Qt calls the tabs behind the front one visible, too."""
         part: QWidget | None = self._frame if self._dock is None else self._dock
-        return part is not None and part.isVisible() and not part.visibleRegion().isEmpty()
+        return part is not None and is_seen(part)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Catch up when the dock comes into sight or goes: shown, hidden, its frame brought to the front."""
@@ -271,3 +271,12 @@ def _shown(scene: Scene) -> Iterator[object]:
     yield scene.exemplar
     for column in scene.columns:
         yield from (column.image, column.result, *column.frames)
+
+
+def is_seen(part: QWidget) -> bool:
+    """Return whether any of a widget can be seen; what its own parts cover is seen through them."""
+    if not part.isVisible():
+        return False
+    if not part.visibleRegion().isEmpty():
+        return True
+    return any(isinstance(each, QWidget) and is_seen(each) for each in part.children())

@@ -30,7 +30,7 @@ EXEMPLAR = 0
 # The presenter stands nearer than the first row.
 NOTES_FACTOR = 1.2
 # The columns of a step stand side by side as long as each has room for so many letters.
-LETTERS = 26
+LETTERS = 30
 # Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
 SHOW_ALL = ("lab", "lessons")
 SHARE_WITHOUT_COLUMNS = 0.6
