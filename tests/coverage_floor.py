@@ -35,8 +35,7 @@ def pytest_runtestloop(session: pytest.Session) -> Generator[None, object, objec
             raise pytest.UsageError("--coverage-floors needs --cov.")
         session.config.stash[_TABLE] = _analyze(plugin.cov_controller.cov)
         session.config.stash[_COVERED] = {
-            package: _percent([row for row in session.config.stash[_TABLE] if row[0].startswith(f"{package}/")])
-            for package in FLOORS
+            package: share(session.config.stash[_TABLE], package) for package in FLOORS
         }
     return outcome
 
@@ -73,6 +72,15 @@ def _analyze(coverage: Any) -> list[Row]:
 def _percent(rows: list[Row]) -> float:
     statements = sum(row[1] for row in rows)
     return 100.0 * (1 - sum(row[2] for row in rows) / statements) if statements else 100.0
+
+
+def share(rows: list[Row], package: str) -> float:
+    own = [row for row in rows if row[0].startswith(f"{package}/")]
+    if not own:
+        raise pytest.UsageError(
+            f"--coverage-floors: no file of {package} was measured; run from the project's folder."
+        )
+    return _percent(own)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

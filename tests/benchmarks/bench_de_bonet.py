@@ -197,6 +197,6 @@ def test_explain_a_pixel() -> None:
         sampling = whole(pixels, 0.3, 512)().details.sampling
         spent = [cpu(partial(explain, sampling, *at), 3) for at in np.ndindex(8, 8)]
         print(f"\nexplain a pixel, {name}: at most {max(spent) * 1e3:.1f} ms", end="")
-        # The pointer moves on after a sixtieth of a second, about 35 units.
+        # The pointer moves on after a sixtieth of a second, about 44 units.
         assert max(spent) < 15 * one
     print()

@@ -253,7 +253,7 @@ ALLOWED = {
     # A lock, which is neither read nor written, and what its own processes pass on to each other.
     ("texlab_core/batch/folder.py", "os.open"),
     ("texlab_core/batch/processes.py", "open"),
-    ("texlab_core/batch/processes.py", "np.load"),
+    ("texlab_core/batch/child.py", "np.load"),
     # The system's own.
     ("texlab/app/memory.py", "Path('/proc/self/statm').read_text"),
     ("texlab_core/work/memory.py", "Path(path).read_text"),

@@ -24,9 +24,12 @@ from texlab_core.batch.cluster import Cluster
 from texlab_core.batch.places import InProcess
 from texlab_core.batch.processes import UNBORN, Processes
 from texlab_core.batch.running import run_batch, run_jobs
+from texlab_core.engine.inputs import ArraysInput
 from texlab_core.engine.job import Job
+from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.methods.efros_leung.params import EfrosLeungParams
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -124,6 +127,17 @@ def test_one_process_two_and_a_cluster_that_loses_a_worker_give_the_same_files(t
     done = run_python("-c", ON_CLUSTER, tmp_path / "cluster")
     assert done.stdout == "made 12\n", done.stderr
     assert files_of(tmp_path / "cluster" / "out") == wanted
+
+
+def test_arrays_arrive_as_they_are() -> None:
+    params = EfrosLeungParams(window=5)
+    (plain,) = jobs((14,), method="efros-leung", params=params)
+    state = run(plain).details.state()
+    inputs = dict(plain.inputs) | {"state": ArraysInput(state, "state")}
+    (plan,) = jobs((14,), method="efros-leung", params=params, inputs=inputs)
+    ((_, outcome),) = run_jobs(iter([plan]), place=Processes(1))
+    assert outcome.error == ""
+    np.testing.assert_array_equal(outcome.value.image, run(plan).image)
 
 
 def test_a_process_that_dies_costs_its_running_jobs_a_second_run(tmp_path: Path) -> None:

@@ -150,6 +150,14 @@ def rows_of(report):
     return found
 
 
+def assert_alike(cells, others):
+    """Assert that words are the same, and numbers nearly: a texture may come out with other details elsewhere."""
+    number = r"-?\d+(?:\.\d+)?"
+    assert [re.sub(number, "#", cell) for cell in cells] == [re.sub(number, "#", cell) for cell in others]
+    one, other = (np.array(re.findall(number, " ".join(each)), float) for each in (cells, others))
+    np.testing.assert_allclose(one, other, rtol=0.05, atol=0.1)
+
+
 def test_the_report_of_the_help_is_what_its_module_makes(tmp_path):
     """Two of the forty are made again; pictures are compared by blocks, as those of figures are."""
     text = REPORTS["de-bonet-800"].read_text("utf-8")
@@ -164,7 +172,7 @@ def test_the_report_of_the_help_is_what_its_module_makes(tmp_path):
     for title, (cells, pictures) in made.items():
         there, kept = stored[title]
         assert cells[:4] == there[:4]
-        assert len(cells) == len(there)
+        assert_alike(cells[4:], there[4:])
         assert len(pictures) == 2
         for drawn, picture in zip(pictures, kept, strict=True):
             (one, size), (other, other_size) = blocks(io.BytesIO(drawn)), blocks(io.BytesIO(picture))

@@ -153,7 +153,8 @@ def test_only_the_newest_earlier_results_are_kept(tmp_path):
     [
         {"seed": -1}, {"size": {"width": 0, "height": 3}}, {"method": 4}, {"method": "none"}, {"extra": 1},
         {"thumbnail": [65, 3]}, {"thumbnail": [0, 3]}, {"thumbnail": [6, 64]}, {"thumbnail": "x"},
-        {"inputs": {"mask": "0" * 64}}, {"inputs": []}, {"measures": {"a": "b"}}, {"parameters": {"no": 1}},
+        {"inputs": {"mask": "0" * 64}}, {"inputs": []}, {"measures": {"a": "b"}}, {"measures": {"cuts": 10**380}},
+        {"parameters": {"no": 1}},
     ],
 )  # fmt: skip
 def test_what_is_wrong_in_a_history_is_one_sentence(tmp_path, change):
@@ -189,6 +190,37 @@ def test_a_history_that_is_too_long_is_refused(tmp_path):
     path.write_bytes(pack_archive(files | {"project.json": json.dumps(data).encode()}))
     with pytest.raises(ProjectError, match="at most 24"):
         read_project(path)
+
+
+@pytest.mark.parametrize(("files", "left"), [(512, 4), (11, 4), (9, 3), (7, 2), (4, 1), (3, 0)])
+def test_earlier_results_go_before_a_project_cannot_be_saved(tmp_path, monkeypatch, files, left):
+    """Each has an input of two files: the newest ones stay, as many as there is room for."""
+    mixed = [
+        dataclasses.replace(
+            past, method="mixture", params=find_method("mixture").params(), inputs={"second": second}
+        )
+        for past, second in zip(pasts(4), (as_exemplar(DEEP[: 20 + place]) for place in range(4)), strict=True)
+    ]
+    project = dataclasses.replace(whole(), exemplar=None, crop=None, chosen=0, columns=(column(history=mixed),))
+    monkeypatch.setattr("texlab_core.documents.project.MAX_FILES", files)
+    path = tmp_path / "a.texlab"
+    save_project(path, project)
+    history = read_project(path).columns[0].history
+    assert [past.seed for past in history] == [past.seed for past in mixed[4 - left :]]
+
+
+def test_an_earlier_result_whose_input_is_too_large_is_left_out(tmp_path, monkeypatch):
+    old, new = pasts(2)
+    large = dataclasses.replace(
+        old, method="mixture", params=find_method("mixture").params(), inputs={"second": as_exemplar(DEEP)}
+    )
+    project = dataclasses.replace(
+        whole(), exemplar=None, crop=None, chosen=0, columns=(column(history=(large, new)),)
+    )
+    monkeypatch.setattr("texlab_core.documents.project.MAX_INPUT", 64)
+    save_project(tmp_path / "a.texlab", project)
+    (left,) = read_project(tmp_path / "a.texlab").columns[0].history
+    assert left.seed == new.seed
 
 
 def test_an_input_is_kept_once(tmp_path):

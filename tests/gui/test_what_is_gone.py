@@ -144,6 +144,12 @@ def test_what_has_gone_is_held_by_no_tab(qtbot: Any, exemplar: Any, kind: type[D
         watched.host.close()
 
 
+def test_a_large_result_that_is_there_is_found(exemplar: Any) -> None:
+    scene = large_and(finished(exemplar, USUAL[0], SMALL), exemplar, USUAL[0], 1)
+    assert of_old()
+    assert scene.columns
+
+
 def large_and(small: ColumnScene, exemplar: Any, method: str, place: int) -> Scene:
     """Return a scene with a large result as the chosen column, or beside it, that nobody else refers to."""
     large = finished(exemplar, method, BIG, place)

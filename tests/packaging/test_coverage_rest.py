@@ -7,6 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from tests.coverage_floor import share
+
 ROOT = Path(__file__).resolve().parents[2]
 MODULE = '''"""A module."""
 from typing import TYPE_CHECKING
@@ -51,6 +55,13 @@ full, rested = watch(False), watch(True)
 before = {sys.modules["thing"].__file__: set(full[0])}
 print(json.dumps([full, rested, watch(True)]))
 """
+
+
+def test_a_package_of_which_nothing_was_measured_is_below_its_floor() -> None:
+    rows = [("texlab/a.py", 10, 1)]
+    assert share(rows, "texlab") == 90.0
+    with pytest.raises(pytest.UsageError, match="no file of texlab_core was measured"):
+        share(rows, "texlab_core")
 
 
 def test_a_file_rests_when_all_of_it_has_run(tmp_path: Path) -> None:

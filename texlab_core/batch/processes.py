@@ -16,7 +16,7 @@ import tempfile
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -199,7 +199,8 @@ class _Drop(Deposit):
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             with open(temporary, "wb") as file:
-                np.savez(file, allow_pickle=False, **parcel)
+                arrays: dict[str, Any] = dict(parcel)
+                np.savez(file, **arrays)
             os.replace(temporary, self._file(name))
         except OSError as error:
             raise InputError(f"{self.folder}: an input cannot be laid down there ({reason(error)}).") from error

@@ -13,10 +13,11 @@ import dataclasses
 import hashlib
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.embedding import embed
-from texlab_core.documents.project_history import encode_thumbnails, history_to_json
+from texlab_core.documents.project_history import MOST, encode_thumbnails, past_to_json
 from texlab_core.documents.recipe import known_measures
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
@@ -183,14 +184,10 @@ def encode_project(project: Project) -> bytes:
         return _put(given, inputs)
 
     results = {f"results/{place}.png": each.result for place, each in enumerate(project.columns) if each.result}
-    for place, each in enumerate(project.columns):
-        if each.history:
-            results[f"history/{place}.png"] = encode_thumbnails(each.history)
     crop, used = project.crop, _used_part(project)
-    has_history = any(each.history for each in project.columns)
-    data = {
+    data: dict[str, Any] = {
         "format": FORMAT,
-        "version": VERSION if has_history else 1 if used is None else 2,
+        "version": 1 if used is None else 2,
         "versions": dict(versions()),
         "exemplar": None if project.exemplar is None else put(project.exemplar),
         "scale": project.scale,
@@ -209,7 +206,6 @@ def encode_project(project: Project) -> bytes:
                 "measures": known_measures(column.measures),
                 "result": bool(column.result),
             }
-            | ({} if not column.history else {"history": history_to_json(column.history, put)})
             for column in project.columns
         ],
         "chosen": project.chosen,
@@ -220,6 +216,10 @@ def encode_project(project: Project) -> bytes:
     if used is not None:
         data["used"] = put(used)
     _check_room(inputs, results)
+    for place, column in enumerate(project.columns):
+        if entries := _add_history(place, column.history, inputs, results):
+            data["columns"][place]["history"] = entries
+            data["version"] = VERSION
     return pack_archive({"project.json": strict_json.dumps(data).encode(), **results, **inputs})
 
 
@@ -233,6 +233,31 @@ def _used_part(project: Project) -> ImageInput | None:
     part = as_exemplar(whole, scale=project.scale, crop=project.crop)
     # It is a picture of its own here, whatever it was taken from.
     return dataclasses.replace(part, origin=None, notes=())
+
+
+def _add_history(
+    place: int, history: Sequence[ProjectPast], inputs: dict[str, bytes], results: dict[str, bytes]
+) -> list[dict[str, Any]]:
+    """Add the earlier results of a column as far as there is room, the newest first, and return them as JSON."""
+    entries: list[dict[str, Any]] = []
+    newest = history[-MOST:]
+    for past in reversed(newest):
+        more: dict[str, bytes] = {}
+        try:
+            entry = past_to_json(past, partial(_put, files=more))
+            _check_room(inputs | more, results, {"pictures": b""})
+        except ProjectError:
+            break
+        inputs |= more
+        entries.insert(0, entry)
+    if entries:
+        sheet = {f"history/{place}.png": encode_thumbnails(newest[-len(entries) :])}
+        try:
+            _check_room(inputs, results | sheet)
+        except ProjectError:
+            return []
+        results |= sheet
+    return entries
 
 
 def _check_room(*parts: Mapping[str, bytes]) -> None:

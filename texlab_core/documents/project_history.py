@@ -55,30 +55,26 @@ class ProjectPast:
     measures: Mapping[str, float] = field(default_factory=dict)
 
 
-def history_to_json(history: Sequence[ProjectPast], put: Callable[[Input], str]) -> list[dict[str, Any]]:
-    """Return the newest of them as JSON; ``put`` keeps an input and returns its name."""
-    return [
-        {
-            "method": past.method,
-            "parameters": past.params.to_json(),
-            "inputs": {role: put(each) for role, each in past.inputs.items()},
-            "size": size_to_json(past.size),
-            "seed": past.seed,
-            "measures": known_measures(past.measures),
-            "thumbnail": list(past.thumbnail.shape[:2]),
-        }
-        for past in history[-MOST:]
-    ]
+def past_to_json(past: ProjectPast, put: Callable[[Input], str]) -> dict[str, Any]:
+    """Return one of them as JSON; ``put`` keeps an input and returns its name."""
+    return {
+        "method": past.method,
+        "parameters": past.params.to_json(),
+        "inputs": {role: put(each) for role, each in past.inputs.items()},
+        "size": size_to_json(past.size),
+        "seed": past.seed,
+        "measures": known_measures(past.measures),
+        "thumbnail": list(past.thumbnail.shape[:2]),
+    }
 
 
 def encode_thumbnails(history: Sequence[ProjectPast]) -> bytes:
-    """Return the small pictures of the newest ones below each other, as a PNG file."""
+    """Return their small pictures below each other, as a PNG file."""
     from texlab_core.images.formats.writing import encode_image
 
-    newest = history[-MOST:]
-    sheet = np.zeros((sum(len(past.thumbnail) for past in newest), SIDE, 3), np.uint8)
+    sheet = np.zeros((sum(len(past.thumbnail) for past in history), SIDE, 3), np.uint8)
     top = 0
-    for past in newest:
+    for past in history:
         height, width = past.thumbnail.shape[:2]
         sheet[top : top + height, :width] = past.thumbnail
         top += height
@@ -93,7 +89,7 @@ def history_from_json(
     Parameters
     ----------
     data
-        What :func:`history_to_json` returned, from a file.
+        A list of what :func:`past_to_json` returned, from a file.
     sheet
         What :func:`encode_thumbnails` returned; b"" when it is missing.
     inputs_of

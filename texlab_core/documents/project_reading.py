@@ -33,7 +33,7 @@ from texlab_core.engine.sizes import size_from_json
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.archive import read_archive
-from texlab_core.files.wording import printable
+from texlab_core.files.wording import printable, sentence_case
 
 if TYPE_CHECKING:
     import os
@@ -73,7 +73,7 @@ def read_project(path: str | os.PathLike[str], first: Callable[[Project], None] 
     files = read_archive(path, _NAMES, max_files=MAX_FILES, max_bytes=MAX_BYTES, error=ProjectError)
     what = f"the project {printable(str(path))}"
     if "project.json" not in files:
-        raise ProjectError(f"{what[4:].capitalize()} lacks its project.json.")
+        raise ProjectError(f"{sentence_case(what[4:])} lacks its project.json.")
     data = strict_json.loads(files["project.json"], what=what, max_bytes=2**24, error=ProjectError)
     try:
         checked = strict_json.check_document(data, "project", form=FORMAT, version=VERSION, error=ProjectError)

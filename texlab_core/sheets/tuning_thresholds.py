@@ -59,7 +59,7 @@ def threshold_rounds(start: Measured, shape_of: Shape, limit: float, streams: St
     Parameters
     ----------
     start
-        Where to begin, measured, with :class:`~texlab_core.methods.de_bonet.method.DeBonetParams`.
+        Where to begin, measured, with :class:`~texlab_core.methods.de_bonet.params.DeBonetParams`.
     shape_of
         Number of rows of the table and names of its columns, for parameters that were tried.
     limit
