@@ -120,7 +120,7 @@ class FramedDock(Dock):
     folds: ClassVar[bool] = True
     """Whether it leaves its room to the body when one teaches."""
     no_settings: ClassVar[frozenset[str]] = frozenset()
-    """Controls that say something about the column, not about how the tab stands."""
+    """Controls that act on the session (a column, a pixel, a lesson), and do not say how the tab stands."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)

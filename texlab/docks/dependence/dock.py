@@ -51,6 +51,8 @@ class DependenceDock(FramedDock):
     order = 21
     rest_ms = 20
     empty = "Histograms appear as soon as there is an exemplar."
+    # An example opens a picture.
+    no_settings = frozenset({"ready"})
 
     heavy = True
 

@@ -73,6 +73,8 @@ class ExplainDock(FramedDock):
     follows_pointer = True
     rest_ms = 0
     empty = INVITATION
+    # The pixel is a result's.
+    no_settings = frozenset({"column", "row"})
 
     heavy = True
 

@@ -62,6 +62,8 @@ class InputsDock(FramedDock):
     help = "What a method works on besides the exemplar: the other textures of a mixture, a start image, a mask."
     order = 72
     empty = "The method of the chosen column takes no further images; a mixture does."
+    # How much an image is reduced is the column's.
+    no_settings = frozenset({"scale"})
 
     def build(self) -> None:
         """Make the controls and the pictures."""
@@ -226,6 +228,9 @@ class InputsDock(FramedDock):
         if given is None:
             return
         before = given.origin.scale if given.origin is not None else 1.0
+        if self.scale.value() == round(100 * before):
+            # The box shows whole percents; the scale itself may lie between them.
+            return
         crop = given.origin.crop if given.origin is not None else None
         scale = self.scale.value() / 100
         if crop is not None:

@@ -33,6 +33,7 @@ from texlab.state.intentions import (
     UndoLesson,
 )
 from texlab.state.lesson_scene import NO_LESSON
+from texlab.style.text_size import follow_text
 from texlab.widgets.calm_wheel import ChoiceBox
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import set_tip
@@ -61,6 +62,8 @@ class LessonsDock(FramedDock):
     order = 97
     rest_ms = 0
     empty = "The lessons are being read."
+    # The step is the lesson's, and of one that is given a copy is edited.
+    no_settings = frozenset({"jump", "edit"})
 
     def build(self) -> None:
         """Make the list and the words."""
@@ -130,6 +133,7 @@ class LessonsDock(FramedDock):
         self.words.show_step(None)
         self._drawing.setVisible(False)
         self._show_parts()
+        follow_text(self.list, self._give_width)
 
     def _make_drawing(self) -> QWidget:
         self.pane = PicturePane("lessons-drawing", "Drawing of the step")

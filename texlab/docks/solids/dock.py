@@ -73,6 +73,8 @@ class SolidsDock(FramedDock):
     order = 45
     rest_ms = 0
     empty = "Slices and objects appear when a column makes a solid: add the method Solid texture."
+    # The size is the column's.
+    no_settings = frozenset({"width", "height", "depth"})
 
     heavy = True
 
