@@ -142,6 +142,52 @@ def test_what_the_file_dialog_has_asked_about_is_not_asked_again(
     assert path.read_text().startswith("<")
 
 
+def test_only_files_that_were_named_are_replaced(
+    explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path
+) -> None:
+    opened.out.setText(str(tmp_path))
+    opened.sizes.setText("16")
+    opened.pattern.setText("{name}-{method}-{seed}")
+    column_id = explorer.session.selected_id
+    first, second = (tmp_path / f"waves-heeger-bergen-{seed}.png" for seed in (1, 2))
+    for seed, path in ((1, first), (2, second)):
+        path.write_text("mine")
+        explorer.session.set_column_seed(column_id, seed)
+        wait_idle(qtbot, explorer)
+        # The second time the button means the first file alone.
+        run(qtbot, opened)
+        qtbot.waitUntil(
+            lambda path=path: opened.message.text().startswith(f"One file is there already: {path.name}.")
+        )
+        assert opened.run_button.text() == "Replace"
+    assert (first.read_text(), second.read_text()) == ("mine", "mine")
+    press(qtbot, opened)
+    assert first.read_text() == "mine"
+    assert read_recipe(second).seed == 2
+
+
+def test_what_is_found_for_another_folder_is_no_leave_to_replace(
+    opened: ExportDialog, qtbot: Any, tmp_path: Path
+) -> None:
+    one, other = tmp_path / "one", tmp_path / "other"
+    opened.out.setText(str(one))
+    opened.sizes.setText("16")
+    name = opened.names.text()
+    for folder in (one, other):
+        folder.mkdir()
+        (folder / name).write_text("mine")
+    run(qtbot, opened)
+    # Its answer comes with the next turn of the loop, at the soonest.
+    opened.out.setText(str(other))
+    qtbot.waitUntil(lambda: opened.message.text() == "Nothing was written: the fields were changed meanwhile.")
+    assert opened.run_button.text() == "Export"
+    run(qtbot, opened)
+    qtbot.waitUntil(lambda: opened.message.text().startswith("One file is there already"))
+    assert [(folder / name).read_text() for folder in (one, other)] == ["mine", "mine"]
+    # What the desk is told is what was named, whatever the button says.
+    assert opened.request().replace == {other / name}
+
+
 def test_a_growth_says_how_many_pictures_it_has(opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
     opened.kind.setCurrentIndex(2)
     opened.out.setText(str(tmp_path / "frames"))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gc
+import weakref
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +13,7 @@ from dock_scenes import image_input
 from mouse import on_screen
 
 from texlab.docks import dock_classes
+from texlab.docks.explain.dock import ExplainDock
 from texlab.docks.host import DockHost
 from texlab.docks.lab.dock import LabDock
 from texlab.runs.slots import Slots
@@ -23,6 +26,7 @@ from texlab_core.findings.finding import FINDING, Finding, Region, Remedy, Where
 
 if TYPE_CHECKING:
     from texlab.docks.base import Dock
+    from texlab.docks.explain.side import Side
 
 # Sides that nothing else has, nor have their halves.
 BIG = (41, 37)
@@ -119,7 +123,8 @@ class Watched:
         self._qtbot.waitUntil(lambda: not self.host.busy)
         # What was announced last may ask for more on the next turn.
         self._qtbot.wait(0)
-        self._qtbot.waitUntil(lambda: not self.host.busy)
+        # The thread still holds an answer at the moment at which it tells it.
+        self._qtbot.waitUntil(lambda: not self.host.busy and not self.host._worker.busy)
 
 
 @pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
@@ -148,6 +153,91 @@ def test_a_large_result_that_is_there_is_found(exemplar: Any) -> None:
     scene = large_and(finished(exemplar, USUAL[0], SMALL), exemplar, USUAL[0], 1)
     assert of_old()
     assert scene.columns
+
+
+def held_by(side: Side, result: Any) -> list[weakref.ref[Any]]:
+    """Return what tells whether a result, what it was made with and its explanation are still held."""
+    assert side.view is not None
+    found = [result]
+    for whole in (result.details, side.view._explained):
+        found += [whole, *(getattr(whole, field.name) for field in dataclasses.fields(whole))]
+    # Not tuples and numbers.
+    return [weakref.ref(each) for each in found if type(each).__weakrefoffset__]
+
+
+def still(refs: list[weakref.ref[Any]]) -> list[str]:
+    gc.collect()
+    return [type(each).__qualname__ for ref in refs if (each := ref()) is not None]
+
+
+@pytest.mark.parametrize("method", ["heeger-bergen", "de-bonet", "efros-leung"])
+def test_an_explanation_goes_with_its_result(qtbot: Any, exemplar: Any, method: str) -> None:
+    watched = Watched(qtbot, ExplainDock)
+    dock: Any = watched.dock
+    first, second = dock.sides
+    small = finished(exemplar, method, SMALL)
+    other = finished(exemplar, "efros-leung" if method != "efros-leung" else "de-bonet", SMALL)
+    place = Probe(1, 3, 3, False)
+
+    def explained(side: Side, column_id: int = 1) -> list[weakref.ref[Any]]:
+        old = finished(exemplar, method, SMALL, column_id)
+        columns = (old,) if column_id == 1 else (small, old)
+        watched.see(Scene(exemplar, columns, 1, place, compared=tuple(each.id for each in columns)))
+        found = held_by(side, old.result)
+        assert len(found) > 3
+        return found
+
+    try:
+        held = explained(first)
+        watched.see(Scene(exemplar, (small,), 1))
+        assert not still(held), "seen, and no pixel is asked about"
+        held = explained(first)
+        watched.see(Scene(exemplar, (other,), 1, place))
+        assert not still(held), "seen, and explained in another view"
+        held = explained(first)
+        watched.hide()
+        watched.tell(Scene(exemplar, (small,), 1))
+        assert not still(held), "out of sight"
+        held = explained(second, 2)
+        watched.see(Scene(exemplar, (small,), 1, place))
+        assert not still(held), "no longer compared"
+        assert first.view is not None
+    finally:
+        watched.host.close()
+
+
+def test_the_band_that_was_looked_at_is_looked_at_again(qtbot: Any, exemplar: Any) -> None:
+    watched = Watched(qtbot, ExplainDock)
+    dock: Any = watched.dock
+    small = finished(exemplar, "heeger-bergen", SMALL)
+    try:
+        watched.see(Scene(exemplar, (small,), 1, Probe(1, 3, 3, False)))
+        view: Any = dock.sides[0].view
+        chosen = (view.bars.selected + 1) % len(view.bars.bars)
+        view.bars._choose(chosen)
+        for probe in (None, None, Probe(1, 4, 4, False)):
+            watched.see(Scene(exemplar, (small,), 1, probe))
+            assert bool(view.bars.bars) == (probe is not None)
+        assert view.bars.selected == chosen
+        assert view.title.text() == view.bars.bars[chosen].title.capitalize()
+    finally:
+        watched.host.close()
+
+
+@pytest.mark.parametrize("seen", [True, False])
+def test_an_experiment_holds_nothing_of_an_exemplar_that_has_gone(qtbot: Any, exemplar: Any, seen: bool) -> None:
+    watched = Watched(qtbot, LabDock)
+    try:
+        watched.pages(Scene(image_input(np.random.default_rng(3).random((*BIG, 3), np.float32))))
+        after = Scene(exemplar)
+        if not seen:
+            watched.hide()
+            watched.tell(after)
+        else:
+            watched.see(after)
+        assert not of_old()
+    finally:
+        watched.host.close()
 
 
 def large_and(small: ColumnScene, exemplar: Any, method: str, place: int) -> Scene:

@@ -43,7 +43,7 @@ class Outcome:
     written
         The files.
     there
-        Files that would be replaced, and nobody has said that they may be: nothing was written then.
+        All files that would be replaced, if the user was not told of every one of them: nothing was written then.
     note
         What there is to say about what was written, one sentence.
     """
@@ -120,7 +120,7 @@ class ExportDesk(RunDesk):
     def _done(self, outcome: Outcome) -> None:
         assert self.dialog is not None
         if outcome.there:
-            self.dialog.ask_to_replace([path.name for path in outcome.there])
+            self.dialog.ask_to_replace(outcome.there)
             return
         written = self.written = outcome.written
         self.dialog.show_share(1.0)
@@ -279,7 +279,9 @@ def carry_out(asked: ExportRequest, items: Sequence[Item], task: Task) -> Outcom
             task.progress(share)
 
     stop = task.should_stop
-    if not asked.replace and (there := _there(asked, items)):
+    # What is there now counts: the columns may have changed since the user was told.
+    there = _there(asked, items)
+    if not asked.replace.issuperset(there):
         return Outcome(there=there)
     if asked.kind == "files":
         selected = _selected(asked, items)

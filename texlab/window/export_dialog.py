@@ -65,7 +65,7 @@ class ExportRequest:
     motion, frames, rate
         Of an animation.
     replace
-        Files that are there already may be replaced.
+        Files that may be replaced: those that the user was told are there.
     """
 
     kind: Kind
@@ -84,7 +84,7 @@ class ExportRequest:
     motion: str = "growth"
     frames: int = 60
     rate: int = 12
-    replace: bool = False
+    replace: frozenset[Path] = frozenset()
 
 
 class ExportDialog(RunDialog):
@@ -101,7 +101,10 @@ class ExportDialog(RunDialog):
         super().__init__("export", "Export", "Making the results ...", 460, parent)
         self._written = False
         self._sound = False
-        self._replaces = False
+        # What the user was told would be replaced; another press of the button means these alone.
+        self._named: frozenset[Path] = frozenset()
+        # A field was edited while it ran.
+        self._outdated = False
         # The file dialog has asked about this one.
         self._agreed = ""
         self._outs: dict[Kind, str] = {}
@@ -256,27 +259,38 @@ class ExportDialog(RunDialog):
             motion=self.motion.currentText().strip(),
             frames=self.frames.value(),
             rate=self.rate.value(),
-            replace=self._replaces or (bool(self._agreed) and self.out.text() == self._agreed),
+            replace=self._named | self._agreed_paths(),
         )
 
-    def ask_to_replace(self, names: Sequence[str]) -> None:
-        """Say which files are there already; pressing the button once more replaces them."""
-        self._replaces = True
+    def _agreed_paths(self) -> frozenset[Path]:
+        agreed = bool(self._agreed) and self.out.text() == self._agreed
+        return frozenset((Path(self._agreed.strip()),)) if agreed else frozenset()
+
+    def ask_to_replace(self, paths: Sequence[Path]) -> None:
+        """Say which files are there already; pressing the button once more replaces these, and no others."""
+        self.bar.setValue(0)
+        if self._outdated:
+            # They belong to what the fields said before.
+            self.show_idle("Nothing was written: the fields were changed meanwhile.")
+            return
+        self._named = frozenset(paths)
+        names = [path.name for path in paths]
         self.run_button.setText("Replace")
         some = f"{len(names)} files are" if len(names) > 1 else "One file is"
         more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
         self.show_idle(f"{some} there already: {', '.join(names[:_NAMED])}{more}. Replace, or write elsewhere.")
-        self.bar.setValue(0)
 
     def _ask_again(self) -> None:
         """Ask anew before anything is replaced."""
-        self._replaces = False
+        self._named = frozenset()
         self.run_button.setText("Export")
 
     def _edited(self) -> None:
-        if self._replaces:
+        self._outdated = True
+        if self._named:
             self._ask_again()
-            self.message.setText("")
+            if not self._running:
+                self.message.setText("")
         self.edited.emit(self.request())
 
     def show_names(self, names: Sequence[str]) -> None:
@@ -302,7 +316,7 @@ class ExportDialog(RunDialog):
 
     def show_running(self) -> None:
         """Show that it has begun."""
-        self._written = False
+        self._written = self._outdated = False
         super().show_running()
 
     def _check(self) -> None:

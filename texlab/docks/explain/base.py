@@ -36,8 +36,22 @@ class ExplanationView(QWidget):
     intention = Signal(object)
     aspect_changed = Signal(object)
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._explained: Any = None
+
     def show_explanation(self, explained: Any) -> None:
         """Show what ``Explainer.explain`` returned, and tell which places to outline."""
+        raise NotImplementedError
+
+    def forget(self) -> None:
+        """Let go of what was explained: it may hold all that a result was made with."""
+        if self._explained is not None:
+            self._explained = None
+            self.empty_parts()
+
+    def empty_parts(self) -> None:
+        """Empty what shows the explanation, without telling anyone; how the user looks at it stays."""
         raise NotImplementedError
 
     def take_aspect(self, aspect: Any) -> None:

@@ -172,6 +172,13 @@ class DeBonetView(ExplanationView):
         self._show_level(tile, tiles[tile].chosen)
         self.marks_changed.emit(self._marks(tile))
 
+    def empty_parts(self) -> None:
+        """Empty levels, bars and words."""
+        self.levels.show_tiles((), 0, 0)
+        self.structure.show_structure(None)
+        self.caption.show_parts()
+        self.words.show_parts()
+
     def _tile(self, place: int) -> Tile:
         explained = self._explained
         assert explained is not None

@@ -121,8 +121,8 @@ class ExplainDock(FramedDock):
         lettered = zip(LETTERS, asked, strict=False)
         headings = [f"{letter}: {title}" if both else "" for letter, (_, title) in lettered]
         parts = [self._part(column, probe) for column, _ in asked if probe is not None]
-        if parts:
-            self._last = {column.id: part for (column, _), part in zip(asked, parts, strict=True) if part.key}
+        # Without a pixel nothing is kept: a result that nobody asks about may go.
+        self._last = {column.id: part for (column, _), part in zip(asked, parts, strict=False) if part.key}
         self.why = "" if both or not parts else parts[0].reason
         if not parts or self.why:
             return None
@@ -174,6 +174,12 @@ class ExplainDock(FramedDock):
         """Let go of what is explained."""
         super().forget()
         self._last = {}
+
+    def clear_shown(self) -> None:
+        """Empty both sides, and outline nothing."""
+        super().clear_shown()
+        for side in self.sides:
+            side.show_reason("")
 
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, and take the marks away."""

@@ -188,6 +188,11 @@ class EfrosLeungView(ExplanationView):
         self.grid.select(-1)
         self._look_at(-1)
 
+    def empty_parts(self) -> None:
+        """Empty the window, its matches and the words."""
+        self.grid.show_patches(())
+        self.words.setText("")
+
     def _look_at(self, index: int) -> None:
         explained = self._explained
         if explained is None:

@@ -181,6 +181,8 @@ class HeegerBergenView(ExplanationView):
         super().__init__()
         self.setObjectName("explain-heeger-bergen")
         self._explained: ExplainedPixel | None = None
+        # The subband that is looked at again when there is something to look at.
+        self._kept = -1
         self.bars = BandBars("explain-bars", "What every subband adds to the pixel")
         set_tip(
             self.bars,
@@ -235,11 +237,22 @@ class HeegerBergenView(ExplanationView):
         self._explained = explained
         self.bars.show_bars(explained.bars)
         if self.bars.selected < 0:
+            self.bars.select(self._kept)
+        if self.bars.selected < 0:
             strongest = max(range(len(explained.bars)), key=lambda index: abs(explained.bars[index].value))
             self.bars.select(strongest)
         self._show_band()
         self._point(-1)
         self.marks_changed.emit(())
+
+    def empty_parts(self) -> None:
+        """Empty bars, picture and words; the subband that was looked at is remembered."""
+        self._kept = self.bars.selected
+        self.bars.show_bars(())
+        self.title.setText("")
+        self.pane.show_nothing()
+        self.spot.setData([], [])
+        self.words.setText("")
 
     def _open_dependence(self) -> None:
         explained, index = self._explained, max(self.bars.selected, 0)

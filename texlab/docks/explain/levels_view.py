@@ -97,9 +97,11 @@ class LevelsView(OwnKeys, QWidget):
     def select(self, tile: int, place: int) -> None:
         """Select a tile and one of its places without telling anyone."""
         self._tile, self._place = tile, place
+        words = ""
         if self._tiles:
             each = self._tiles[tile]
-            self.setAccessibleDescription(f"{each.title}: {each.note}, place {place + 1} of {len(each.places)}")
+            words = f"{each.title}: {each.note}, place {place + 1} of {len(each.places)}"
+        self.setAccessibleDescription(words)
         self.update()
 
     def set_theme(self, theme: Theme) -> None:

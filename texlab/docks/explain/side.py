@@ -84,15 +84,23 @@ class Side(QWidget):
             if self.second:
                 _call_b(view)
             self._pages.addWidget(view)
+        self._forget(but=view)
         self._pages.setCurrentWidget(view)
         self.setFocusProxy(view)
         view.show_explanation(explained)
 
     def show_reason(self, reason: str) -> None:
-        """Show why there is nothing to show, and outline nothing."""
+        """Show why there is nothing to show, outline nothing, and let go of what was explained."""
         self._reason.setText(reason)
         self._pages.setCurrentWidget(self._reason)
         self._mark(())
+        self._forget()
+
+    def _forget(self, but: ExplanationView | None = None) -> None:
+        """Let every view but this one go of what it shows."""
+        for view in self.views.values():
+            if view is not but:
+                view.forget()
 
     def take_aspect(self, aspect: Any) -> None:
         """Look at the same of the explanation as the other side, where there is such a thing."""

@@ -17,6 +17,7 @@ from texlab.docks.lab.representation import RepresentationPage
 from texlab.docks.lab.sphere import SpherePage
 from texlab.docks.lab.steps import StepsPage
 from texlab.docks.lab.support import SupportPage
+from texlab.state.scene import are_same
 from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
@@ -114,10 +115,13 @@ class LabDock(Dock):
         return self.page.message
 
     def note_scene(self, scene: Scene) -> None:
-        """Let every experiment take note of it, also those that lie behind."""
+        """Let every experiment take note of it; those that lie behind let go of answers about another scene."""
+        same = scene.exemplar is self.scene.exemplar and are_same(scene.columns, self.scene.columns)
         super().note_scene(scene)
         for page in self._pages.values():
             page.note_scene(scene)
+            if not same and page is not self.page and page.answer is not None:
+                page.forget()
 
     def show_scene(self, scene: Scene) -> None:
         """Show what needs no computing."""
@@ -145,6 +149,11 @@ class LabDock(Dock):
     def present_waiting(self) -> None:
         """Say that the answer is under way."""
         self.page.present_waiting()
+
+    def forget(self) -> None:
+        """Let every experiment go of its answer."""
+        for page in self._pages.values():
+            page.forget()
 
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""

@@ -16,6 +16,7 @@ from texlab.widgets.number_box import NumberBox
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plane_pane import PlanePane
+from texlab.widgets.plots import Plot
 from texlab.widgets.view_link import ViewLink
 from texlab_core.errors import Cancelled
 from texlab_core.transforms.luma import luma
@@ -44,6 +45,18 @@ class LabPage(FramedDock):
     within: ClassVar[str] = "lab"
     # The figures follow the pointer.
     rest_ms: ClassVar[int] = 0
+    heavy: ClassVar[bool] = True
+
+    def clear_shown(self) -> None:
+        """Empty the pictures, and what the pointer reads in them."""
+        super().clear_shown()
+        for pictures in self.body.findChildren(Pictures):
+            pictures.show_pictures(())
+        for plot in self.body.findChildren(Plot):
+            plot.clear()
+
+    def drop_kept(self) -> None:
+        """Keep the rest: what was made of an exemplar goes with it, and all else is of no exemplar."""
 
     def add_real(
         self,

@@ -95,7 +95,7 @@ class SupportPage(LabPage):
 
         def compute(should_stop: Callable[[], bool]) -> SupportAnswer:
             size = (min(pixels.shape[0], _SIDE), min(pixels.shape[1], _SIDE))
-            key = (size, settings)
+            key = (Same(pixels), settings)
             found = recent.get(key, lambda: frequency_support.supports(kind, size, levels, orientations))
             return support_pictures(pixels, found, band, settings)
 
