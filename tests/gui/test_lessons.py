@@ -106,6 +106,20 @@ def item_of(dock: LessonsDock, name: str) -> QTreeWidgetItem:
     raise AssertionError(name)
 
 
+def test_steps_come_with_what_explains_them(qtbot: Any, explorer: Explorer, small: str) -> None:
+    give(qtbot, explorer, small)
+    wait_ready(qtbot, explorer)
+    teacher, kept = explorer.teacher, explorer.controller.shared.kept
+    keys = set(teacher.runner._keys[0])
+    for key in keys:
+        end = kept.get(key)
+        assert end is not None
+        kept.put(key, dataclasses.replace(end, stored=True))
+    teacher.runner._keys.clear()
+    teacher.runner.prepare_from(0)
+    qtbot.waitUntil(lambda: all((end := kept.get(key)) is not None and not end.stored for key in keys))
+
+
 def test_a_step_sets_everything_and_leaving_brings_everything_back(
     qtbot: Any, explorer: Explorer, small: str
 ) -> None:

@@ -239,7 +239,8 @@ def _make(shared: Shared, opened: Opened, place: int, task: TaskLike) -> _Made:
         for column in columns:
             key = key_of(column, state, pictures.exemplar)
             end = shared.kept.get(key)
-            if end is None:
+            if end is None or end.stored:
+                # What comes from the disk shows the result, not how it came about.
                 Loading(shared.warmth, Need(column.method, pictures.exemplar.channels))(task)
                 run = ColumnRun(partial(job_of, column, state, pictures.exemplar), shared.cache)
                 end = run(task)
