@@ -151,10 +151,11 @@ def test_only_the_newest_earlier_results_are_kept(tmp_path):
 @pytest.mark.parametrize(
     "change",
     [
-        {"seed": -1}, {"size": {"width": 0, "height": 3}}, {"method": 4}, {"method": "none"}, {"extra": 1},
+        {"seed": -1}, {"size": {"width": 0, "height": 3}}, {"method": 4}, {"extra": 1}, {"parameters": []},
         {"thumbnail": [65, 3]}, {"thumbnail": [0, 3]}, {"thumbnail": [6, 64]}, {"thumbnail": "x"},
         {"inputs": {"mask": "0" * 64}}, {"inputs": []}, {"measures": {"a": "b"}}, {"measures": {"cuts": 10**380}},
-        {"parameters": {"no": 1}},
+        {"method": "none", "seed": -1}, {"method": "none", "size": {"width": 0, "height": 3}},
+        {"parameters": {"no": 1}, "inputs": {"mask": "0" * 64}}, {"method": "none", "measures": {"a": "b"}},
     ],
 )  # fmt: skip
 def test_what_is_wrong_in_a_history_is_one_sentence(tmp_path, change):
@@ -166,6 +167,29 @@ def test_what_is_wrong_in_a_history_is_one_sentence(tmp_path, change):
     with pytest.raises(ProjectError) as told:
         read_project(path)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"method": "none"}, {"method": "none", "size": {"width": 3, "height": 3, "depth": 3}},
+        {"parameters": {"no": 1}}, {"parameters": {"iterations": 10**9}},
+    ],
+)  # fmt: skip
+def test_an_earlier_result_of_what_is_not_known_here_is_left_out(tmp_path, change):
+    made = dataclasses.replace(whole(), chosen=0, columns=(column(history=pasts(3)), column(history=pasts(1))))
+    files = pack(made)
+    data = json.loads(files["project.json"])
+    data["columns"][0]["history"][1] |= change
+    path = tmp_path / "a.texlab"
+    path.write_bytes(pack_archive(files | {"project.json": json.dumps(data).encode()}))
+    found = read_project(path)
+    assert found.unknown_pasts == 1
+    kept = found.columns[0].history
+    assert [past.seed for past in kept] == [0, 2]
+    for past, before in zip(kept, (made.columns[0].history[0], made.columns[0].history[2]), strict=True):
+        np.testing.assert_array_equal(past.thumbnail, before.thumbnail)
+    assert len(found.columns[1].history) == 1
 
 
 @pytest.mark.parametrize("sheet", [None, b"", b"\x89PNG", b"no picture"])

@@ -114,7 +114,7 @@ def open_window(qtbot: Any, qapp: Any) -> Iterator[Callable[..., Explorer]]:
             window.activateWindow()
         # Most tests look at panels; what a first start shows is tested where the stage is.
         settings.values.setdefault("panels", True)
-        explorer = texlab_app.complete(window, settings, themes)
+        explorer = texlab_app.complete(window, settings, themes, source)
         opened.append(weakref.ref(explorer))
         if columns is not None:
             explorer.saved = explorer.saved or {"seed": 5, "size": [size, size]}

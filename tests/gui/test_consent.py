@@ -77,6 +77,7 @@ def test_the_status_bar_says_once_what_goes_on(qtbot: Any) -> None:
         ((), ""),
         (("save",), "Saving ..."),
         (("open", "session", "save", "sheet"), "Opening and saving ..."),
+        (("cell-window",), "Opening ..."),
         (("palette",), ""),
     ):
         bar.show_errands(names)

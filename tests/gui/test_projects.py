@@ -3,32 +3,37 @@
 from __future__ import annotations
 
 import dataclasses
+import json
+import tempfile
 import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
+from PySide6.QtCore import QProcess
 from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, result_image, wait_idle
 from texlab.columns.status import figures, numbers_of, shows_numbers
+from texlab.state.changes import sample_of
 from texlab.state.chosen import Column, Sample, State
 from texlab.state.scene import Past
 from texlab.state.session import Session
 from texlab.storage.paths import config_dir
-from texlab.storage.projects import open_project, project_of
+from texlab.storage.projects import is_handed_on, open_project, project_of, write_for_window
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import Preset
 from texlab_core.documents.project import save_project
 from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.registry import find_method
+from texlab_core.errors import InputError
+from texlab_core.files.archive import pack_archive
 from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
-
-    import pytest
 
     from texlab.app.explorer import Explorer
 
@@ -162,6 +167,83 @@ def test_earlier_results_and_notes_come_back(
     other.session.undo()
     assert other.session.state.notes == ""
     wait_idle(qtbot, other)
+
+
+def test_no_history_goes_with_an_exemplar_that_is_still_being_prepared(
+    qtbot: Any, explorer: Explorer, tmp_path: Path
+) -> None:
+    first = ids(explorer)[0]
+    assert read_project(saved(qtbot, explorer, tmp_path / "before.texlab")).columns[0].history
+    other = as_exemplar(np.random.default_rng(3).random((24, 28, 3)).astype(np.float32), name="other")
+    explorer.session.set_sample(sample_of(other, None))
+    assert explorer.controller.preparing
+    assert explorer.controller.column_scene(first).history
+    made = read_project(saved(qtbot, explorer, tmp_path / "during.texlab"))
+    assert made.exemplar is not None
+    assert made.exemplar.sha256 == other.sha256
+    assert [each.history for each in made.columns] == [(), ()]
+    wait_idle(qtbot, explorer)
+
+
+def test_what_is_left_out_of_a_history_is_said(texlab_home: Path, tmp_path: Path) -> None:
+    method = find_method("heeger-bergen")
+    image = as_exemplar(np.zeros((8, 8, 3), np.float32), name="a")
+    past = Past((), "", method.id, method.params(), (), (4, 4), 1, np.zeros((4, 4, 3), np.uint8))
+    state = State(Sample(image), (Column(1, method.id, method.params()),))
+    path = tmp_path / "a.texlab"
+    save_project(path, project_of(state, 1, {}, "", histories={1: [past] * 3}))
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    data = json.loads(files["project.json"])
+    for number, words in ((1, "1 earlier result is"), (2, "2 earlier results are")):
+        data["columns"][0]["history"][number]["method"] = "none"
+        path.write_bytes(pack_archive(files | {"project.json": json.dumps(data).encode()}))
+        opened = open_project(str(path))
+        assert opened.notes == (
+            f"Opened {path}: 1 column (Heeger-Bergen).",
+            f"{words} left out, whose methods or parameters are not known here.",
+        )
+        assert len(opened.histories.get(1, ())) == 3 - number
+
+
+@pytest.fixture
+def handed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], str]:
+    """Return what leaves a cell for another window; the folder of temporary files is the test's."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    image = as_exemplar(np.zeros((8, 8, 3), np.float32), name="wall.png")
+    state = State(Sample(image), (Column(1, "tiling", find_method("tiling").params()),))
+    return lambda: write_for_window(state)
+
+
+def test_nothing_stays_of_what_one_window_leaves_for_another(
+    texlab_home: Path, handed_on: Callable[[], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = Path(tempfile.gettempdir())
+    path = handed_on()
+    assert is_handed_on(path)
+    assert open_project(path).notes == ("Opened wall: 1 column (Tiling).",)
+    assert not list(folder.iterdir())
+    path = handed_on()
+    Path(path).write_bytes(b"PK")
+    with pytest.raises(InputError):
+        open_project(path)
+    assert not list(folder.iterdir())
+    monkeypatch.setattr("texlab_core.documents.project.MAX_INPUT", 10)
+    with pytest.raises(InputError):
+        handed_on()
+    assert not list(folder.iterdir())
+
+
+def test_nothing_stays_when_the_other_window_does_not_start(
+    qtbot: Any, explorer: Explorer, handed_on: Callable[[], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(QProcess, "startDetached", lambda *_: (False, 0))
+    path = handed_on()
+    explorer.handlers.open_another_window(path)
+    assert "could not be started" in explorer.window.message_bar.label.text()
+    qtbot.waitUntil(lambda: explorer.idle)
+    assert not Path(path).parent.exists()
 
 
 def test_a_copy_for_a_student_tells_nothing_of_this_computer(tmp_path: Path) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,16 +18,19 @@ from PySide6.QtCore import QProcess
 
 from tests.gui.conftest import ids, result_image, wait_idle
 from tests.gui.test_storage import state
+from texlab.state.chosen import Column, Sample, State
 from texlab.state.session import Session
 from texlab.storage import sessions
 from texlab.storage.autosave import Autosave
 from texlab.storage.kept_exemplar import Kept, load
 from texlab.storage.paths import config_dir
+from texlab.storage.projects import write_for_window
 from texlab.storage.reading import last_exemplar
 from texlab.storage.settings import Settings, columns_from_json, session_to_json
 from texlab_core.documents.preset_store import PresetStore
 from texlab_core.documents.presets import Preset
 from texlab_core.engine.registry import methods
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -101,6 +107,45 @@ def test_two_windows_have_two_sessions_and_both_come_back(
     again.window.close()
 
 
+@pytest.mark.parametrize("kind", ["handed on", "project", "image"])
+def test_a_project_takes_no_session_away_that_is_kept(
+    qtbot: Any,
+    open_window: Callable[..., Explorer],
+    texlab_home: Path,
+    texture: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    kind: str,
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    kept = sessions.claim()
+    write(kept, dataclasses.replace(state(1), notes="Mine."))
+    kept.release()
+    before = kept.path.read_bytes()
+    image = as_exemplar(np.zeros((16, 16, 3), np.float32), name="cell")
+    cell = State(Sample(image), (Column(1, "pixels", methods()["pixels"].params()),), 3, (16, 16), 2)
+    source = str(texture) if kind == "image" else write_for_window(cell)
+    if kind == "project":
+        source = str(shutil.copy(source, tmp_path / "cell.texlab"))
+    opened = open_window(source, wait=False)
+    qtbot.waitUntil(lambda: opened.session.state.sample is not None)
+    # An image goes into the last session; a project is one of its own.
+    anew = kind != "image"
+    assert (opened.session.state.notes == "") == anew
+    assert (opened.own is not None and opened.own.path != kept.path) == anew
+    opened.window.close()
+    assert (kept.path.read_bytes() == before) == anew
+    if anew:
+        assert opened.own is not None
+        assert json.loads(opened.own.path.read_text())["seed"] == 3
+        # The next start says what waits.
+        again = sessions.claim()
+        assert again.path == opened.own.path
+        assert [each.number for each in again.others] == [int(kept.path.stem)]
+        assert "is kept as well" in sessions.told_of_others(again.others, Settings().values)
+        again.release()
+
+
 def test_another_window_is_another_process_of_the_same_program(
     explorer: Explorer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -169,6 +214,34 @@ def test_the_newest_free_session_comes_first_and_the_others_are_told_once(texlab
     assert "(0.png, 1 column)" in sessions.told_of_others(own.others, values)
     assert sessions.told_of_others(own.others, json.loads(json.dumps(values))) == ""
     for each in (own, owned[2]):
+        each.release()
+
+
+def test_a_new_session_leaves_those_that_are_kept(texlab_home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = {"seed": 9, "columns": []}
+    first = sessions.claim(old, fresh=True)
+    # That of one for all windows still waits to be the first.
+    assert (first.path.stem, first.saved) == ("2", None)
+    own = sessions.claim(fresh=True)
+    for place, each in enumerate((first, own)):
+        assert each.write({"seed": place, "columns": []})
+        os.utime(each.path, ns=(10**18, 10**18 + place))
+        each.release()
+    third = sessions.claim(fresh=True)
+    assert third.path not in (first.path, own.path)
+    assert [each.number for each in third.others] == [int(own.path.stem), 2]
+    third.release()
+    # They do not grow for ever: what is not looked at would be lost.
+    monkeypatch.setattr(sessions, "MOST", 2)
+    last = sessions.claim(fresh=True)
+    assert (last.path, last.saved) == (first.path, None)
+    assert [each.number for each in last.others] == [int(own.path.stem)]
+    assert last.write({"seed": 5, "columns": []})
+    # It has no other place while all are in use.
+    held = sessions.claim()
+    assert held.path == own.path
+    assert sessions.claim(fresh=True).path not in (first.path, own.path)
+    for each in (last, held):
         each.release()
 
 

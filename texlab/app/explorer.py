@@ -69,9 +69,14 @@ MEMORY_MS = 2000
 
 
 class Explorer(QObject):
-    """The running program behind the window."""
+    """The running program behind the window.
 
-    def __init__(self, window: MainWindow, settings: Settings, themes: ThemeSource) -> None:
+    A ``fresh`` one leaves every kept session as it is, for a source that replaces the whole session.
+    """
+
+    def __init__(
+        self, window: MainWindow, settings: Settings, themes: ThemeSource, *, fresh: bool = False
+    ) -> None:
         super().__init__(window)
         self.window = window
         self.settings = settings
@@ -87,7 +92,7 @@ class Explorer(QObject):
             self._show_several,
         )
         self.presets = PresetManager(window, window.parameters.presets)
-        self.own = claim(settings.values.get(OLD_SESSION)) if settings.kept else None
+        self.own = claim(settings.values.get(OLD_SESSION), fresh=fresh) if settings.kept else None
         self.saved: Any = None if self.own is None else self.own.saved
         """The session of the last time."""
         self.autosave = Autosave(self.session, settings, self.own, self)
@@ -161,7 +166,8 @@ class Explorer(QObject):
         if problem := " ".join(filter(None, (settings.problem, self.own.problem if self.own is not None else ""))):
             log.warning(problem)
             window.message_bar.tell(problem, "problem")
-        elif self.own is not None and (news := told_of_others(self.own.others, settings.values)):
+        # At a fresh start what is opened speaks; the next start tells of the sessions that wait.
+        elif not fresh and self.own is not None and (news := told_of_others(self.own.others, settings.values)):
             window.message_bar.tell(news, "news")
         self._memory.start()
 

@@ -63,14 +63,15 @@ def build(settings: Settings, themes: ThemeSource) -> MainWindow:
     return MainWindow(settings, themes)
 
 
-def complete(window: MainWindow, settings: Settings, themes: ThemeSource) -> Explorer:
-    """Put the images, the docks and the program behind them into the shell."""
+def complete(window: MainWindow, settings: Settings, themes: ThemeSource, source: str | None = None) -> Explorer:
+    """Put the images, the docks and the program behind them into the shell, to be started with a source."""
     from texlab.style.theme import configure_pyqtgraph
 
     configure_pyqtgraph()
     from texlab.app.explorer import Explorer
+    from texlab.storage.projects import is_whole_session
 
-    return Explorer(window, settings, themes)
+    return Explorer(window, settings, themes, fresh=is_whole_session(source))
 
 
 def run_gui(image: str | None = None) -> int:
@@ -82,7 +83,7 @@ def run_gui(image: str | None = None) -> int:
     window.show()
 
     def fill() -> None:
-        explorer = complete(window, settings, themes)
+        explorer = complete(window, settings, themes, image)
         # What is there by now stays: collections of garbage, while code is loaded, take less of the window's time.
         gc.freeze()
         explorer.start(image)

@@ -33,7 +33,17 @@ HANDED_ON = "texlab-window-"
 
 AnyInput = TypeVar("AnyInput", bound="Input")
 
-__all__ = ["SUFFIX", "OpenedProject", "is_project", "open_project", "project_of"]
+__all__ = [
+    "SUFFIX",
+    "OpenedProject",
+    "is_handed_on",
+    "is_project",
+    "is_whole_session",
+    "open_project",
+    "project_of",
+    "take_away",
+    "write_for_window",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +80,11 @@ class OpenedProject:
 def is_project(source: object) -> bool:
     """Return whether a source is a project file, by its name."""
     return isinstance(source, str) and source.lower().endswith(SUFFIX)
+
+
+def is_whole_session(source: str | None) -> bool:
+    """Return whether a start with this source replaces columns and notes: a project that is there."""
+    return source is not None and is_project(source) and Path(source).is_file()
 
 
 def project_of(
@@ -216,9 +231,11 @@ def open_project(path: str, first: Callable[[OpenedProject], None] | None = None
     InputError
         One sentence when it is none, or damaged.
     """
-    project = read_project(path, None if first is None else lambda part: first(_opened(path, part, ())))
-    if is_handed_on(path):
-        _take_away(path)
+    try:
+        project = read_project(path, None if first is None else lambda part: first(_opened(path, part, ())))
+    finally:
+        if is_handed_on(path):
+            take_away(path)
     return _opened(path, project, _keep_presets(project))
 
 
@@ -226,7 +243,11 @@ def write_for_window(state: State) -> str:
     """Write a session for a window that is about to be opened, which removes it; return where it is."""
     name = "cell" if state.sample is None else Path(state.sample.source.name.removeprefix("gallery:")).stem
     path = Path(tempfile.mkdtemp(prefix=HANDED_ON)) / f"{safe_part(name)}{SUFFIX}"
-    save_project(path, project_of(state, 1, {}, ""))
+    try:
+        save_project(path, project_of(state, 1, {}, ""))
+    except BaseException:
+        take_away(str(path))
+        raise
     return str(path)
 
 
@@ -236,9 +257,10 @@ def is_handed_on(path: str) -> bool:
     return folder.name.startswith(HANDED_ON) and folder.parent == Path(tempfile.gettempdir())
 
 
-def _take_away(path: str) -> None:
+def take_away(path: str) -> None:
+    """Remove what :func:`write_for_window` wrote, with its folder."""
     with contextlib.suppress(OSError):
-        Path(path).unlink()
+        Path(path).unlink(missing_ok=True)
         Path(path).parent.rmdir()
 
 
@@ -264,7 +286,12 @@ def _opened(path: str, project: Project, kept: Sequence[str]) -> OpenedProject:
     size = project.size
     state = State(sample, tuple(columns), project.seed, size, len(columns) + 1, project.notes)
     names = ", ".join(dict.fromkeys(find_method(each.method).title for each in project.columns))
-    said = [f"Opened {path}: {len(columns)} columns ({names})."]
+    count = "1 column" if len(columns) == 1 else f"{len(columns)} columns"
+    # What one window left for another is gone by now: its folder tells nobody anything.
+    said = [f"Opened {Path(path).stem if is_handed_on(path) else path}: {count} ({names})."]
+    if unknown := project.unknown_pasts:
+        many = "1 earlier result is" if unknown == 1 else f"{unknown} earlier results are"
+        said.append(f"{many} left out, whose methods or parameters are not known here.")
     if kept:
         said.append(f"New presets: {', '.join(kept)}.")
     return OpenedProject(

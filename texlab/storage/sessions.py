@@ -105,13 +105,16 @@ def folder() -> Path:
     return config_dir() / FOLDER
 
 
-def claim(of_old: Any = None) -> OwnSession:
+def claim(of_old: Any = None, *, fresh: bool = False) -> OwnSession:
     """Return the session that was saved last and that no window has, or a new one.
 
     Parameters
     ----------
     of_old
         The session that versions with one session for all windows left in the settings; it stands for the first.
+    fresh
+        Return a new one: those that are kept stay as they are. Only where as many are kept as are ever looked at,
+        the oldest one that no window has gives its place.
     """
     found = _saved()
     problems: list[str] = []
@@ -127,19 +130,31 @@ def claim(of_old: Any = None) -> OwnSession:
             problems.append(_put_aside(path, error))
             lock.unlock()
             continue
-        if own is None:
+        if own is None and not fresh:
             own = OwnSession(path, lock, saved)
         else:
             others.append(OtherSession(int(path.stem), path.stat().st_mtime_ns, in_words(saved)))
             lock.unlock()
+    if fresh and len(found) >= MOST and others:
+        own = _in_place_of(others)
     if own is None:
-        own = _new(of_old)
+        own = _new(of_old, first=2 if fresh and of_old is not None else 1)
     own.others, own.problem = tuple(others), " ".join(problems)
     return own
 
 
-def _new(of_old: Any) -> OwnSession:
-    for number in range(1, 10_000):
+def _in_place_of(others: list[OtherSession]) -> OwnSession | None:
+    """Return a new session in the file of the oldest of these, which is taken from the list."""
+    path = folder() / f"{others[-1].number}.json"
+    lock = _lock(path)
+    if not _take(lock):
+        return None
+    others.pop()
+    return OwnSession(path, lock)
+
+
+def _new(of_old: Any, first: int = 1) -> OwnSession:
+    for number in range(first, 10_000):
         path = folder() / f"{number}.json"
         if path.exists():
             continue

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, QPoint, QProcess, Qt
 from PySide6.QtWidgets import QMenu
 
 from texlab.columns.history_popup import HistoryPopup
+from texlab.storage.projects import is_handed_on, take_away
 from texlab.widgets.name_field import NameField
 from texlab.widgets.once import Once
 from texlab.widgets.plain import set_tip
@@ -175,12 +176,14 @@ class Handlers(QObject):
         self._controller.once("forget", lambda task: kept.forget(), done)
 
     def open_another_window(self, source: str = "") -> None:
-        """Start the program once more, which takes a session that no window has, and opens a source in it."""
+        """Start the program once more: it takes a session that no window has, or a new one for a project."""
         frozen = getattr(sys, "frozen", False)
         command = ["gui"] if frozen else ["-m", "texlab", "gui"]
         started, _ = QProcess.startDetached(sys.executable, [*command, source] if source else command)
         if not started:
             self._window.message_bar.tell("Another window could not be started.", "problem")
+            if is_handed_on(source):
+                self._controller.once("leftover", lambda task: take_away(source))
 
     def turn(self, what: str, change: Any) -> None:
         """Make ``change(merge=what)``: turns of a number box without a pause are one step of the history."""

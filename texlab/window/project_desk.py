@@ -47,7 +47,8 @@ class ProjectDesk:
         session = self._controller.session
         state, selected = session.state, session.selected_id
         images, measures, histories = {}, {}, {}
-        exemplar = self._controller.exemplar
+        # While another exemplar is on its way, the one in use is not the one that is saved.
+        exemplar = None if self._controller.preparing else self._controller.exemplar
         for column in state.columns:
             scene = self._controller.column_scene(column.id)
             if scene is not None and exemplar is not None:

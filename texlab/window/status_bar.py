@@ -23,6 +23,7 @@ ERRANDS = {
     "save-code": "saving",
     "copy": "copying",
     "fill": "filling",
+    "cell-window": "opening",
 }
 
 

@@ -120,6 +120,8 @@ class Project:
         Free text.
     layout
         "explore", "teach" or "tune"; "" for whatever is there.
+    unknown_pasts
+        How many earlier results of the file were left out, as their methods or parameters are not known here.
     """
 
     exemplar: ImageInput | None
@@ -133,6 +135,7 @@ class Project:
     notes: str = ""
     layout: str = ""
     levels: Levels | None = None
+    unknown_pasts: int = 0
 
     @property
     def used_exemplar(self) -> ImageInput | None:

@@ -84,7 +84,9 @@ def encode_thumbnails(history: Sequence[ProjectPast]) -> bytes:
 def history_from_json(
     data: Any, sheet: bytes, inputs_of: Callable[[dict[str, Any], Method], dict[str, Input]]
 ) -> tuple[ProjectPast, ...]:
-    """Return the earlier results of a column, checked.
+    """Return the earlier results of a column, checked; without those that are of another program's methods.
+
+    What a plug-in or another version made, whose method or parameters are not known here, is left out.
 
     Parameters
     ----------
@@ -98,7 +100,7 @@ def history_from_json(
     Raises
     ------
     InputError
-        One sentence when anything is wrong.
+        One sentence when anything is malformed.
     """
     from texlab_core.images.formats.reading import read_image
 
@@ -117,7 +119,9 @@ def history_from_json(
         raise InputError("the pictures of a history do not have their sizes.")
     found, top = [], 0
     for each, (height, width) in zip(data, sizes, strict=True):
-        found.append(_past(each, np.ascontiguousarray(values[top : top + height, :width]), inputs_of))
+        past = _past(each, np.ascontiguousarray(values[top : top + height, :width]), inputs_of)
+        if past is not None:
+            found.append(past)
         top += height
     return tuple(found)
 
@@ -136,17 +140,29 @@ def _past(
     data: dict[str, Any],
     thumbnail: NDArray[np.uint8],
     inputs_of: Callable[[dict[str, Any], Method], dict[str, Input]],
-) -> ProjectPast:
+) -> ProjectPast | None:
     parameters, inputs, method = data.get("parameters"), data.get("inputs"), data.get("method")
     if not isinstance(method, str) or not isinstance(parameters, dict) or not isinstance(inputs, dict):
         raise InputError("history: method must be a name, parameters and inputs objects.")
-    known = find_method(method)
-    return ProjectPast(
-        method=known.id,
-        params=known.params.from_json(parameters),
-        size=check_size(size_from_json(data.get("size"), known.dimensions), known.dimensions),
-        seed=check_seed(data.get("seed")),
-        thumbnail=thumbnail,
-        inputs=frozen_mapping(inputs_of(inputs, known)),
-        measures=measures_from_json(data.get("measures", {})),
-    )
+    known = _known(method)
+    # Also what is left out must be well formed, as far as that can be told.
+    given = data.get("size")
+    solid = isinstance(given, dict) and "depth" in given
+    dimensions = known.dimensions if known is not None else 3 if solid else 2
+    size = check_size(size_from_json(given, dimensions), dimensions)
+    seed, measures = check_seed(data.get("seed")), measures_from_json(data.get("measures", {}))
+    if known is None:
+        return None
+    made_of = frozen_mapping(inputs_of(inputs, known))
+    try:
+        params = known.params.from_json(parameters)
+    except InputError:
+        return None
+    return ProjectPast(known.id, params, size, seed, thumbnail, made_of, measures)
+
+
+def _known(method: str) -> Method | None:
+    try:
+        return find_method(method)
+    except InputError:
+        return None

@@ -94,6 +94,7 @@ class _Reader:
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self._files = files
         self._found: dict[tuple[str, str], Input] = {}
+        self._unknown_pasts = 0
 
     def project(self, data: dict[str, Any]) -> Project:
         columns = _list(data, "columns", MAX_COLUMNS)
@@ -109,9 +110,11 @@ class _Reader:
             raise ProjectError(f"chosen: must be the place of a column, got {strict_json.shorten(chosen)}.")
         if data.get("layout") not in _LAYOUTS:
             raise ProjectError(f"layout: must be one of {', '.join(_LAYOUTS[1:])}.")
+        self._unknown_pasts = 0
         made = Project(
             exemplar=image,
             columns=tuple(self._column(each, place) for place, each in enumerate(columns)),
+            unknown_pasts=self._unknown_pasts,
             scale=float(scale),
             crop=_crop(data.get("crop")),
             seed=check_seed(data.get("seed")),
@@ -152,6 +155,10 @@ class _Reader:
         picture = self._files.get(f"results/{place}.png", b"") if result else b""
         if result and not picture.startswith(b"\x89PNG"):
             raise ProjectError(f"the result of column {place + 1} is missing.")
+        history = history_from_json(
+            data.get("history", []), self._files.get(f"history/{place}.png", b""), self._inputs
+        )
+        self._unknown_pasts += len(data.get("history", [])) - len(history)
         return ProjectColumn(
             method=method.id,
             params=method.params.from_json(parameters),
@@ -162,9 +169,7 @@ class _Reader:
             seed=None if seed is None else check_seed(seed),
             pinned=pinned,
             measures=measures_from_json(data.get("measures", {})),
-            history=history_from_json(
-                data.get("history", []), self._files.get(f"history/{place}.png", b""), self._inputs
-            ),
+            history=history,
         )
 
     def _inputs(self, data: dict[str, Any], method: Method) -> dict[str, Input]:
