@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MAX_BYTES = 2**20
 MAX_DEPTH = 32
 # Any whole number of as many fits into a float.
-_MAX_DIGITS = 300
+_MAX_DIGITS = 308
 # A string, or a bracket outside of one; an unclosed string swallows the rest and is left to the parser.
 _TOKENS = re.compile(r'"(?:[^"\\]|\\.)*+\\?"?|[\[{]|[\]}]', re.DOTALL)
 
