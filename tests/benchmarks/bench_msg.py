@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.fft
 
+from tests.benchmarks.clock import cpu, fourier_pair
 from tests.core.spectral_tools import ANY, analyzed, synthesized, texture
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
@@ -22,16 +22,14 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.benchmark
 
 
-def cpu(work: Callable[[], Any], repeats: int) -> float:
+def each(work: Callable[[], Any], repeats: int) -> float:
     """Return the least CPU time of one call over a few series, in seconds."""
-    work()
-    best = np.inf
-    for _ in range(7):
-        began = time.process_time()
+
+    def series() -> None:
         for _ in range(repeats):
             work()
-        best = min(best, (time.process_time() - began) / repeats)
-    return float(best)
+
+    return cpu(series, 7) / repeats
 
 
 @pytest.mark.parametrize(("side", "repeats", "target"), [(256, 40, 6), (512, 12, 4), (1024, 4, 4)])
@@ -39,15 +37,16 @@ def test_analysis_and_synthesis_in_transform_pairs(side: int, repeats: int, targ
     size = (side, side)
     plane = texture(size)
     code = analyzed(plane)
-    pair = cpu(lambda: scipy.fft.irfft2(scipy.fft.rfft2(plane), s=size), repeats)
-    analysis = cpu(lambda: analyzed(plane), repeats)
-    synthesis = cpu(lambda: synthesized(code, size), repeats)
+    pair = each(lambda: scipy.fft.irfft2(scipy.fft.rfft2(plane), s=size), repeats)
+    analysis = each(lambda: analyzed(plane), repeats)
+    synthesis = each(lambda: synthesized(code, size), repeats)
     result = synthesized(code, size)[1]
-    histogram = cpu(lambda: finish(code.tone.apply(result, ANY, "a")), repeats)
+    histogram = each(lambda: finish(code.tone.apply(result, ANY, "a")), repeats)
     print(
         f"\n{side}: pair {1e3 * pair:.2f} ms; analysis {analysis / pair:.2f} + synthesis {synthesis / pair:.2f} = "
         f"{(analysis + synthesis) / pair:.2f} pairs (target {target}); histogram step {1e3 * histogram:.2f} ms"
     )
+    assert analysis + synthesis < target * pair
 
 
 def test_an_edited_code_is_made_anew_many_times_a_second() -> None:
@@ -58,4 +57,7 @@ def test_an_edited_code_is_made_anew_many_times_a_second() -> None:
         edited = replace(code, energies=(code.energies[0] * float(next(factor)), *code.energies[1:]))
         run(Job(method="msg", inputs={"code": code_input(edited)}, size=(256, 256)))
 
-    print(f"\n256: an edited code takes {1e3 * cpu(edit, 20):.2f} ms as a whole job")
+    took, unit = each(edit, 20), fourier_pair()
+    print(f"\n256: an edited code takes {1e3 * took:.2f} ms, {took / unit:.1f} units, as a whole job")
+    # A sixtieth of a second is about 44 units.
+    assert took < 20 * unit

@@ -77,18 +77,15 @@ class CellRunner(SceneRunner):
 
     Parameters
     ----------
-    name
-        Of the thread.
-    scene
-        What there is to see before anything was asked for.
+    name, scene
+        As there.
     slots, warmth
-        Places on the cores, and what is loaded.
+        Places on the cores, of which every cell takes one of its own, and what is loaded.
     """
 
     def __init__(
         self, name: str, scene: CellsScene, slots: Slots, warmth: Warmth, parent: QObject | None = None
     ) -> None:
-        # Every cell takes a place of its own.
         super().__init__(name, scene, None, parent)
         self._slots = slots
         self._warmth = warmth
