@@ -12,7 +12,7 @@ from texlab.state.scene import same_but_probe
 from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from PySide6.QtWidgets import QDockWidget
 
@@ -161,7 +161,7 @@ class DockHost(QObject):
             self._update()
         if before is None or moved or self._dock is None or not self._knows or self.seen:
             return
-        if _has_lost(scene, before):
+        if scene.has_lost(before):
             # A tab behind another one would keep its pictures, and all that was computed from them, for good.
             self._asked, self._knows = None, False
             self._dock.forget()
@@ -259,18 +259,6 @@ class DockHost(QObject):
         if self._dirty:
             self._dirty = False
             self._update()
-
-
-def _has_lost(scene: Scene, before: Scene) -> bool:
-    """Whether the exemplar of before has gone, or what any column showed: its picture, its result, its stages."""
-    now, then = ({id(each) for each in _shown(which)} for which in (scene, before))
-    return not then <= now
-
-
-def _shown(scene: Scene) -> Iterator[object]:
-    yield scene.exemplar
-    for column in scene.columns:
-        yield from (column.image, column.result, *column.frames)
 
 
 def is_seen(part: QWidget) -> bool:

@@ -13,7 +13,7 @@ from texlab_core.methods.de_bonet.thresholds import ThresholdTable
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from texlab_core.engine.inputs import DataInput, ImageInput
+    from texlab_core.engine.inputs import DataInput, ImageInput, Input
     from texlab_core.engine.job import Job
     from texlab_core.engine.params import Params
     from texlab_core.sheets.sweep import Cell
@@ -148,7 +148,7 @@ def restored(state: State, opened: Opened) -> tuple[State, int]:
     """
     job = opened.job
     assert job is not None
-    extra = tuple((name, value) for name, value in job.inputs.items() if name != "exemplar")
+    extra = _further(job)
     # A solid's size is its column's own; all other columns go on making pictures of theirs.
     size, own = (job.picture_size, None) if len(job.size) == 2 else (state.size, job.size)
     state = dataclasses.replace(state, sample=sample_as_used(opened.image), seed=job.seed, size=size)
@@ -215,9 +215,8 @@ def with_cell_column(state: State, cell: Cell, after: int) -> tuple[State, int]:
     another texture; nothing else is changed.
     """
     job, state = cell.job, _with_texture_of(state, cell)
-    inputs = tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
     seed = None if job.seed == state.seed else job.seed
-    column = Column(state.next_id, job.method, job.params, inputs, seed=seed)
+    column = Column(state.next_id, job.method, job.params, _further(job), seed=seed)
     places = [each.id for each in state.columns]
     place = places.index(after) + 1 if after in places else len(places)
     # Behind all that are pinned.
@@ -233,9 +232,13 @@ def cell_alone(state: State, cell: Cell) -> State:
     job = cell.job
     texture = job.inputs["exemplar"]
     assert isinstance(texture, ImageInput)
-    inputs = tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
-    column = Column(1, job.method, job.params, inputs)
+    column = Column(1, job.method, job.params, _further(job))
     return State(sample_as_used(texture), (column,), job.seed, state.size, 2)
+
+
+def _further(job: Job) -> tuple[tuple[str, Input], ...]:
+    """Return a job's inputs besides the exemplar, as a column has them."""
+    return tuple((name, each) for name, each in job.inputs.items() if name != "exemplar")
 
 
 def _with_texture_of(state: State, cell: Cell) -> State:

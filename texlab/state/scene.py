@@ -239,6 +239,15 @@ class Scene:
         """The chosen column."""
         return next((column for column in self.columns if column.id == self.selected_id), None)
 
+    def has_lost(self, before: Scene) -> bool:
+        """Whether the exemplar of before has gone, or what any column showed: its picture, result, stages."""
+        return not before._shown <= self._shown
+
+    @cached_property
+    def _shown(self) -> frozenset[int]:
+        parts = (part for each in self.columns for part in (each.image, each.result, *each.frames))
+        return frozenset(map(id, (self.exemplar, *parts)))
+
 
 def asked_columns(scene: Scene) -> tuple[int, ...]:
     """Return whose pixel the user asks about: a column, or A and B while the column is one of them."""

@@ -11,7 +11,6 @@ from texlab.storage.kept_exemplar import file_name, has_no_home
 from texlab.storage.kept_inputs import input_to_json, kept_folder, load_input
 from texlab.storage.paths import config_dir
 from texlab.storage.sessions import writing
-from texlab_core.documents.project import MAX_NOTE
 from texlab_core.engine.job import DEFAULT_SIZE, check_seed, check_size
 from texlab_core.engine.registry import EXEMPLAR, methods
 from texlab_core.errors import InputError
@@ -230,6 +229,8 @@ def _inputs_from_json(saved: Any, method: Method, tell: Callable[[str], None]) -
 
 def notes_of(data: Any) -> str:
     """Return the notes of a saved session, or none."""
+    from texlab_core.documents.project import MAX_NOTE
+
     notes = data.get("notes", "") if isinstance(data, dict) else ""
     return notes if isinstance(notes, str) and len(notes) <= MAX_NOTE else ""
 

@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 LESSONS = "lessons"
 
 
+def tab_of(step: LessonStep) -> str:
+    """Return the name of the tab that a step opens."""
+    return LESSONS if step.tab is None else step.tab.name
+
+
 class LessonDesk:
     """Makes steps of what there is to see, and writes lessons in the background.
 

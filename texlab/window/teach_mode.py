@@ -12,6 +12,7 @@ from texlab.state.lesson_scene import NO_LESSON
 from texlab.style.text_size import next_zoom
 from texlab.window.chalk import Chalk
 from texlab.window.layouts import HEIGHTS, SIDES
+from texlab.window.lesson_desk import tab_of
 from texlab.window.notes_window import NotesWindow
 from texlab.window.overlay import Overlay
 
@@ -125,7 +126,7 @@ class TeachMode(QObject):
         entered = self.on and not self._was_on
         self._was_on = self.on
         if entered and self._lesson.step is not None:
-            self._window.show_dock(_tab_of(self._lesson.step))
+            self._window.show_dock(tab_of(self._lesson.step))
             self._make_room(self._lesson.step)
         self._show_columns()
 
@@ -152,7 +153,7 @@ class TeachMode(QObject):
         room = self._window.width() // (LETTERS * self._window.fontMetrics().averageCharWidth())
         self._kept = set(columns) if 1 < len(columns) < room else set()
         # Experiments and drawings show the exemplar themselves, where there is one.
-        alone = not columns and (step.exemplar is None or _tab_of(step) in SHOW_ALL)
+        alone = not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL)
         self._window.actions_by_name["tab-alone"].setChecked(alone)
         # The sentence has other lines than the one before.
         self._window.settle_middle()
@@ -259,7 +260,3 @@ class TeachMode(QObject):
             self._window.showMaximized()
         else:
             self._window.showNormal()
-
-
-def _tab_of(step: LessonStep) -> str:
-    return "lessons" if step.tab is None else step.tab.name

@@ -25,7 +25,7 @@ from texlab.state.lessons import state_of
 from texlab.state.scene import Probe
 from texlab.style.pictures import Mark
 from texlab.widgets.settling import settle_all
-from texlab.window.lesson_desk import LessonDesk, read
+from texlab.window.lesson_desk import LessonDesk, read, tab_of
 from texlab_core.documents.lesson_parts import LessonError
 from texlab_core.documents.lessons import MAX_STEPS
 from texlab_core.errors import InputError
@@ -203,7 +203,7 @@ class Teacher(QObject):
         return None if pixel is None else Probe(self._first_id + pixel.column, pixel.row, pixel.x, pinned=True)
 
     def _show_tab(self, step: LessonStep) -> None:
-        name = step.tab.name if step.tab is not None else "lessons"
+        name = tab_of(step)
         # The keyboard stays where it is: Page Down goes on, whatever is in front.
         if not self._window.show_dock(name):
             self._controller.problem.emit(f"The window has no tab called {name}.")

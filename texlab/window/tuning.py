@@ -94,7 +94,6 @@ class Tuning(QObject):
         self._chosen, self._before = 0, 0
         self._offered: tuple[tuple[int, str], ...] = ()
         self._active = False
-        self._told: tuple[int, ...] = ()
         self._pictures: dict[int, Picture | None] = {}
         self._magnifiers: dict[ImagePane, Magnifier] = {}
         self._magnifies = False
@@ -156,10 +155,7 @@ class Tuning(QObject):
             self._window.actions_by_name[name].setEnabled(bool(self.b))
         for each, column in self._workspace.columns.items():
             column.set_badge("" if not self._active else "A" if each == self.a else "B" if each == self.b else "")
-        pair = (self.a, self.b) if self._active and self.a and self.b else ()
-        if pair != self._told:
-            self._told = pair
-            self.compared.emit(pair)
+        self.compared.emit((self.a, self.b) if self._active and self.a and self.b else ())
         self._say()
 
     def _compare_with(self, column_id: int) -> None:

@@ -184,8 +184,6 @@ class ExplainDock(FramedDock):
     def present_nothing(self, reason: str) -> None:
         """Show why there is nothing to show, and take the marks away."""
         super().present_nothing(self.why or INVITATION)
-        for side in self.sides:
-            side.show_reason(self.why or INVITATION)
 
     def set_seen(self, seen: bool) -> None:
         """Outline places in the exemplar only while what they belong to is seen."""

@@ -95,11 +95,15 @@ class SupportPage(LabPage):
 
         def compute(should_stop: Callable[[], bool]) -> SupportAnswer:
             size = (min(pixels.shape[0], _SIDE), min(pixels.shape[1], _SIDE))
-            key = (Same(pixels), settings)
+            key = (size, settings)
             found = recent.get(key, lambda: frequency_support.supports(kind, size, levels, orientations))
             return support_pictures(pixels, found, band, settings)
 
         return Question((Same(pixels), settings, band), compute)
+
+    def drop_kept(self) -> None:
+        """Let go of the bands' planes: they are of no exemplar, and would stay."""
+        self._recent.clear()
 
     def show_answer(self, answer: SupportAnswer) -> None:
         """Show the pictures."""
