@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import functools
 import hashlib
 import math
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from texlab_core.documents.embedding import embed
@@ -30,7 +30,7 @@ from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from texlab_core.documents.presets import Preset
     from texlab_core.documents.project_history import ProjectPast
@@ -183,8 +183,13 @@ def encode_project(project: Project) -> bytes:
     """
     inputs: dict[str, bytes] = {}
 
+    # Earlier results mostly have the inputs of their columns.
+    encoded = functools.cache(_encode_input)
+
     def put(given: Input) -> str:
-        return _put(given, inputs)
+        name, files = encoded(given)
+        inputs.update(files)
+        return name
 
     results = {f"results/{place}.png": each.result for place, each in enumerate(project.columns) if each.result}
     crop, used = project.crop, _used_part(project)
@@ -220,7 +225,7 @@ def encode_project(project: Project) -> bytes:
         data["used"] = put(used)
     _check_room(inputs, results)
     for place, column in enumerate(project.columns):
-        if entries := _add_history(place, column.history, inputs, results):
+        if entries := _add_history(place, column.history, encoded, inputs, results):
             data["columns"][place]["history"] = entries
             data["version"] = VERSION
     return pack_archive({"project.json": strict_json.dumps(data).encode(), **results, **inputs})
@@ -239,7 +244,11 @@ def _used_part(project: Project) -> ImageInput | None:
 
 
 def _add_history(
-    place: int, history: Sequence[ProjectPast], inputs: dict[str, bytes], results: dict[str, bytes]
+    place: int,
+    history: Sequence[ProjectPast],
+    encoded: Callable[[Input], tuple[str, dict[str, bytes]]],
+    inputs: dict[str, bytes],
+    results: dict[str, bytes],
 ) -> list[dict[str, Any]]:
     """Add the earlier results of a column as far as there is room, the newest first, and return them as JSON."""
     entries: list[dict[str, Any]] = []
@@ -247,7 +256,9 @@ def _add_history(
     for past in reversed(newest):
         more: dict[str, bytes] = {}
         try:
-            entry = past_to_json(past, partial(_put, files=more))
+            entry = past_to_json(past, lambda given: encoded(given)[0])
+            for given in past.inputs.values():
+                more |= encoded(given)[1]
             _check_room(inputs | more, results, {"pictures": b""})
         except ProjectError:
             break
@@ -272,8 +283,8 @@ def _check_room(*parts: Mapping[str, bytes]) -> None:
         )
 
 
-def _put(given: Input, files: dict[str, bytes]) -> str:
-    """Add an input to the files and return its name there, a hash of what it is and how it was taken."""
+def _encode_input(given: Input) -> tuple[str, dict[str, bytes]]:
+    """Return an input's name, a hash of what it is and how it was taken, and its files."""
     entry = embed(given, limit=MAX_INPUT, used=MAX_INPUT)
     if not any(key in entry for key in (*PICTURES, "arrays", "data")):
         raise ProjectError(f"The input {given.name} is too large to be kept in a project.")
@@ -287,6 +298,5 @@ def _put(given: Input, files: dict[str, bytes]) -> str:
     for picture in pictures.values():
         digest.update(picture)
     name = digest.hexdigest()
-    files[INPUT_NAME.format(name)] = text
-    files.update({f"inputs/{name}-{key}.png": picture for key, picture in pictures.items()})
-    return name
+    files = {f"inputs/{name}-{key}.png": picture for key, picture in pictures.items()}
+    return name, {INPUT_NAME.format(name): text} | files

@@ -55,12 +55,12 @@ class ProjectPast:
     measures: Mapping[str, float] = field(default_factory=dict)
 
 
-def past_to_json(past: ProjectPast, put: Callable[[Input], str]) -> dict[str, Any]:
-    """Return one of them as JSON; ``put`` keeps an input and returns its name."""
+def past_to_json(past: ProjectPast, name_of: Callable[[Input], str]) -> dict[str, Any]:
+    """Return one of them as JSON; ``name_of`` returns the name of an input in the project."""
     return {
         "method": past.method,
         "parameters": past.params.to_json(),
-        "inputs": {role: put(each) for role, each in past.inputs.items()},
+        "inputs": {role: name_of(each) for role, each in past.inputs.items()},
         "size": size_to_json(past.size),
         "seed": past.seed,
         "measures": known_measures(past.measures),
@@ -70,7 +70,7 @@ def past_to_json(past: ProjectPast, put: Callable[[Input], str]) -> dict[str, An
 
 def encode_thumbnails(history: Sequence[ProjectPast]) -> bytes:
     """Return their small pictures below each other, as a PNG file."""
-    from texlab_core.images.formats.writing import encode_image
+    from texlab_core.images.formats.writing import encode_png
 
     sheet = np.zeros((sum(len(past.thumbnail) for past in history), SIDE, 3), np.uint8)
     top = 0
@@ -78,7 +78,7 @@ def encode_thumbnails(history: Sequence[ProjectPast]) -> bytes:
         height, width = past.thumbnail.shape[:2]
         sheet[top : top + height, :width] = past.thumbnail
         top += height
-    return encode_image("a.png", np.multiply(sheet, np.float32(1 / 255), dtype=np.float32))
+    return encode_png(sheet)
 
 
 def history_from_json(

@@ -94,7 +94,6 @@ class _Reader:
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self._files = files
         self._found: dict[tuple[str, str], Input] = {}
-        self._unknown_pasts = 0
 
     def project(self, data: dict[str, Any]) -> Project:
         columns = _list(data, "columns", MAX_COLUMNS)
@@ -110,11 +109,14 @@ class _Reader:
             raise ProjectError(f"chosen: must be the place of a column, got {strict_json.shorten(chosen)}.")
         if data.get("layout") not in _LAYOUTS:
             raise ProjectError(f"layout: must be one of {', '.join(_LAYOUTS[1:])}.")
-        self._unknown_pasts = 0
+        taken = tuple(self._column(each, place) for place, each in enumerate(columns))
         made = Project(
             exemplar=image,
-            columns=tuple(self._column(each, place) for place, each in enumerate(columns)),
-            unknown_pasts=self._unknown_pasts,
+            columns=taken,
+            unknown_pasts=sum(
+                len(data.get("history", ())) - len(column.history)
+                for data, column in zip(columns, taken, strict=True)
+            ),
             scale=float(scale),
             crop=_crop(data.get("crop")),
             seed=check_seed(data.get("seed")),
@@ -155,10 +157,6 @@ class _Reader:
         picture = self._files.get(f"results/{place}.png", b"") if result else b""
         if result and not picture.startswith(b"\x89PNG"):
             raise ProjectError(f"the result of column {place + 1} is missing.")
-        history = history_from_json(
-            data.get("history", []), self._files.get(f"history/{place}.png", b""), self._inputs
-        )
-        self._unknown_pasts += len(data.get("history", [])) - len(history)
         return ProjectColumn(
             method=method.id,
             params=method.params.from_json(parameters),
@@ -169,7 +167,9 @@ class _Reader:
             seed=None if seed is None else check_seed(seed),
             pinned=pinned,
             measures=measures_from_json(data.get("measures", {})),
-            history=history,
+            history=history_from_json(
+                data.get("history", []), self._files.get(f"history/{place}.png", b""), self._inputs
+            ),
         )
 
     def _inputs(self, data: dict[str, Any], method: Method) -> dict[str, Input]:
