@@ -72,7 +72,7 @@ def test_certain_things_and_hints_have_their_own_signs_and_counts() -> None:
     assert (heading(found()), heading(hint)) == ("! Cuts", "? Cuts")
     assert explanation(found()).startswith("It jumps by 9.")
     assert "not certain" in explanation(hint)
-    for word in ("Where: ", "Why: ", "Try: "):
+    for word in ("Where: ", "Why: ", "What to do: "):
         assert word in explanation(found())
     assert signs((found(), hint, hint)) == ["! 1", "? 2"]
     assert signs((hint,)) == ["? 1"]
@@ -150,6 +150,21 @@ def test_clicks_choose_show_and_try(dock: Any, qtbot: Any) -> None:
     assert "D -2.50 → -3.50" in dock.outcome.text()
     assert dock.outcome.isVisible()
     assert [dock.list.item(row).text() for row in range(dock.list.count())] == ["? Small"]
+
+
+def test_what_was_tried_is_told_where_nothing_is_left_to_list(dock: Any, qtbot: Any) -> None:
+    scene = scene_of(column(found()), exemplar=noise(32, 32, seed=4))
+    feed(dock, scene)
+    qtbot.mouseClick(dock.apply, Qt.MouseButton.LeftButton)
+    feed(dock, replace(scene, columns=(replace(scene.columns[0], status="running", measures={}),)))
+    assert dock.message.endswith("The numbers come when it has finished.")
+    assert not dock.apply.isEnabled()
+    better = replace(scene.columns[0], measures={"discriminability": -3.5, "cuts": 4.0}, findings=())
+    feed(dock, replace(scene, columns=(better,)))
+    assert "D -2.50 → -3.50, cuts 9.0 → 4.0. The finding is gone. Nothing was found" in dock.message
+    assert not dock.apply.isEnabled()
+    feed(dock, scene)
+    assert dock.apply.isEnabled()
 
 
 def test_where_nothing_can_be_set_nothing_is_offered(dock: Any) -> None:

@@ -13,9 +13,12 @@ from dock_scenes import check_controls, shown
 from PySide6.QtCore import QPointF, Qt
 
 from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
-from texlab.docks.tuning.dock import TuningDock
+from texlab.docks.tuning.dock import TuningDock, looks
 from texlab.docks.tuning.points import (
+    SEARCH,
+    SWEEP,
     D,
+    Group,
     Placed,
     V,
     axes_of,
@@ -87,6 +90,27 @@ def replace_measures(shown, measures):
 def test_only_numbers_make_curves(axis, curves):
     scene = SweepScene(sweep=Sweep(job_of(), (axis,)), cells=(shown_of(0, 0, index=0), shown_of(1, 1, index=1)))
     assert groups_of(Scene(exemplar=exemplar(), sweep=scene))[0].curves == curves
+
+
+def test_a_method_keeps_its_colour_when_a_search_and_a_sweep_come():
+    methods = [Group(f"method {number}", ()) for number in range(9)]
+    alone = looks(methods)
+    beside = looks([Group(SEARCH, ()), Group(SWEEP, ()), *methods])
+    assert beside[2:] == alone
+    assert not set(beside[:2]) & set(alone)
+
+
+def test_trials_are_a_faint_cloud_behind_runs_that_can_be_read(qtbot):
+    dock = shown(qtbot, TuningDock())
+    cloud = tuple(shown_of(-3, 0.4, index=index) for index in range(3))
+    dock.show_scene(Scene(exemplar=exemplar(), tuning=TuningScene(cells=cloud), points=(shown_of(-3.1, 0.4),)))
+    (trials, run), texts = dock.plot._series[:2], dock.plot._texts
+    assert trials.item.opts["size"] < run.item.opts["size"]
+    assert (trials.item.opts["pen"].style(), run.item.opts["pen"].style()) == (
+        Qt.PenStyle.NoPen,
+        Qt.PenStyle.SolidLine,
+    )
+    assert all(item.fill.color().alpha() > 128 for item, *_ in texts)
 
 
 def test_points_need_both_measures():

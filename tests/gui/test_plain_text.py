@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,6 +61,32 @@ def test_nothing_but_one_module_makes_labels_and_tooltips(path: Path) -> None:
             used.add(node.attr)
     wrong = {name for name in used & MAKERS.keys() if MAKERS[name] != place} - HARMLESS.get(place, set())
     assert not wrong, f"{place} uses {', '.join(sorted(wrong))}: take what texlab/{MAKERS[min(wrong)]} offers."
+
+
+def test_a_label_as_narrow_as_its_room_never_cuts_words() -> None:
+    cut = []
+    for path in sorted(CODE.rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        for name in set(re.findall(r"(\w[\w.]*) = Label\(", source)):
+            # Wraps, fits its own words, or else is to be a ShortLabel.
+            kept = f"{name}.setWordWrap(True)" in source or f"{name}.fontMetrics()" in source
+            if f"{name}.setSizePolicy(QSizePolicy.Policy.Ignored" in source and not kept:
+                cut.append((path.name, name))
+    assert cut == []
+
+
+def test_a_short_label_ends_with_an_ellipsis_and_its_tip_has_all(qtbot: Any) -> None:
+    label = plain.ShortLabel("Nine words of a sentence that has no room", muted=True)
+    qtbot.addWidget(label)
+    assert label.toolTip() == label.text()
+    label.resize(label.sizeHint())
+    assert label.shown_text() == label.text()
+    label.resize(80, label.height())
+    assert label.shown_text().endswith("…")
+    assert label.fontMetrics().horizontalAdvance(label.shown_text()) <= 80
+    shown = label.grab().toImage()
+    label.setText(label.shown_text())
+    assert label.grab().toImage() == shown
 
 
 def test_tips_and_labels_show_what_is_written(qtbot: Any) -> None:

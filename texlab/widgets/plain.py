@@ -11,12 +11,13 @@ import textwrap
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QMessageBox, QToolTip, QTreeWidgetItem, QWidget
+from PySide6.QtCore import QMargins, Qt
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QLabel, QMessageBox, QSizePolicy, QToolTip, QTreeWidgetItem, QWidget
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QPoint
-    from PySide6.QtGui import QAction
+    from PySide6.QtGui import QAction, QPaintEvent
     from PySide6.QtWidgets import QListWidgetItem, QTableWidgetItem
 
 # Characters in a line of a tooltip.
@@ -56,6 +57,42 @@ class Label(QLabel):
         self.setWordWrap(wraps)
         if muted:
             self.setProperty("role", "muted")
+
+
+class ShortLabel(Label):
+    """A line in the width that there is: what has no room gives way to an ellipsis, and the tip has all."""
+
+    def __init__(
+        self, text: str = "", parent: QWidget | None = None, *, name: str = "", muted: bool = False
+    ) -> None:
+        super().__init__(text, parent, name=name, muted=muted)
+        # A long line must not widen the window.
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+    def setText(self, text: str) -> None:
+        """Show a text, and all of it in the tip."""
+        super().setText(text)
+        set_tip(self, text)
+
+    def shown_text(self) -> str:
+        """Return what is painted, with the ellipsis."""
+        room = self.contentsRect().width() - 2 * self.margin()
+        return self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint what there is room for."""
+        painter = QPainter(self)
+        inside = self.contentsRect().marginsRemoved(QMargins(*[self.margin()] * 4))
+        self.style().drawItemText(
+            painter,
+            inside,
+            int(self.alignment()),
+            self.palette(),
+            self.isEnabled(),
+            self.shown_text(),
+            self.foregroundRole(),
+        )
+        painter.end()
 
 
 class MarkupLabel(QLabel):

@@ -30,6 +30,7 @@ pg = configure_pyqtgraph()
 Role = Literal["exemplar", "result", "third", "good", "warning", "error", "muted", "text", "accent"]
 Line = Literal["solid", "dash", "dot"]
 ROOM_FOR_LABELS = 170
+BEHIND_WORDS = 200
 LEAST = (60, 50)
 LINES = {"solid": Qt.PenStyle.SolidLine, "dash": Qt.PenStyle.DashLine, "dot": Qt.PenStyle.DotLine}
 # Colours and line styles for any number of series: no two of the first nine look alike without colour either.
@@ -175,10 +176,10 @@ class Plot(QWidget):
             self._paint(self._series[-1], self._theme)
         return item
 
-    def points(self, x: ArrayLike, y: ArrayLike, role: Role, size: float = 8) -> Any:
-        """Add points of ``size`` pixels."""
+    def points(self, x: ArrayLike, y: ArrayLike, role: Role, size: float = 8, *, faint: bool = False) -> Any:
+        """Add points of ``size`` pixels; faint ones are a cloud behind others, without outlines."""
         item = pg.ScatterPlotItem(x=np.asarray(x, np.float64), y=np.asarray(y, np.float64), size=size)
-        self._series.append(_Series(item, role, "solid", 1, filled=True))
+        self._series.append(_Series(item, role, "solid", 0 if faint else 1, filled=True))
         self.view.addItem(item)
         if self._theme is not None:
             self._paint(self._series[-1], self._theme)
@@ -282,7 +283,8 @@ class Plot(QWidget):
 
     def _paint(self, series: _Series, theme: Theme) -> None:
         colour = QColor(getattr(theme, series.role))
-        series.item.setPen(pg.mkPen(colour, width=series.width, style=LINES[series.line]))
+        pen = pg.mkPen(colour, width=series.width, style=LINES[series.line])
+        series.item.setPen(pen if series.width else None)
         if series.filled:
             wash = QColor(colour)
             wash.setAlpha(60)
@@ -291,6 +293,10 @@ class Plot(QWidget):
     def _paint_text(self, item: Any, role: Role, theme: Theme) -> None:
         item.setColor(QColor(getattr(theme, role)))
         item.setFont(self.font())
+        # Curves and points behind words are seen, and the words are read.
+        behind = QColor(theme.base)
+        behind.setAlpha(BEHIND_WORDS)
+        item.fill = pg.mkBrush(behind)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Tell where the cursor is."""

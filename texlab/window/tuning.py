@@ -12,7 +12,7 @@ from texlab.columns.comparison import Comparison, other_of
 from texlab.columns.magnifier import Magnifier
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.pair_layer import GAINS, Mode
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import Label, ShortLabel, set_tip
 from texlab.widgets.short_box import ShortBox
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ class CompareBar(QWidget):
         super().__init__()
         self.setObjectName("compare-bar")
         self.setAccessibleName("Comparison of A and B")
-        self.words = Label(name="compare-words")
-        self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.words = ShortLabel(name="compare-words")
         self.other = ShortBox()
         self.other.setObjectName("compare-other")
         self.other.setAccessibleName("B, what A is compared with")

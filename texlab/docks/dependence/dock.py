@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout
 
 from texlab.columns.titles import titles
 from texlab.docks.base import Question
@@ -13,7 +13,7 @@ from texlab.docks.dependence.panels import panels
 from texlab.docks.dependence.ready import ASKING, choices, opening
 from texlab.docks.frame import FramedDock, LookedAt, replace_items, shown_image
 from texlab.state.intentions import LightUp, Pin
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import ShortLabel
 from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.dependence import FARTHEST, MOST_LEVEL, Pair
 
@@ -111,9 +111,7 @@ class DependenceDock(FramedDock):
         self.ready.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.ready.setMinimumContentsLength(10)
         self.ready.view().setMinimumWidth(self.ready.view().sizeHintForColumn(0) + 24)
-        self.pair_name = Label(name="dependence-pair", muted=True)
-        # A long line must not widen the window.
-        self.pair_name.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.pair_name = ShortLabel(name="dependence-pair", muted=True)
         self.readout = self.add_readout()
         link = ViewLink()
         self.views = [PanelView(f"dependence-{place}", what, link) for place, what in enumerate(SHOWN)]
@@ -204,7 +202,6 @@ class DependenceDock(FramedDock):
             parts = ", ".join(f"{each.title} {each.share:.2%}" for each in answer if each.share is not None)
             said = f"The chosen cells hold: {parts}. {said}"
         self.pair_name.setText(said)
-        set_tip(self.pair_name, said)
 
     def clear_shown(self) -> None:
         """Let go of the panels."""

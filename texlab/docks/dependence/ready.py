@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from texlab.state.intentions import OpenFailure, OpenLesson
+from texlab_core.engine.registry import find_method
 from texlab_core.findings.failures import examples
 
 if TYPE_CHECKING:
     from texlab.state.intentions import Intention
+    from texlab_core.findings.failures import Failure
 
 LESSON = "assignment-a"
 # Heeger and Bergen, section 6 and its figures; De Bonet, figures 2 to 4 of section 2.
@@ -34,8 +36,13 @@ def choices() -> list[tuple[str, str]]:
     known = examples()
     return [
         ("Assignment a: where independence fails", LESSON),
-        *((f"{known[name].title} ({known[name].method})", name) for name in FAILURES),
+        *((_titled(known[name]), name) for name in FAILURES),
     ]
+
+
+def _titled(example: Failure) -> str:
+    method = find_method(example.method).title
+    return example.title if example.title == method else f"{example.title} ({method})"
 
 
 def opening(name: str) -> Intention:

@@ -6,9 +6,9 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QSizePolicy, QStackedLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
-from texlab.widgets.plain import Label
+from texlab.widgets.plain import Label, ShortLabel
 
 if TYPE_CHECKING:
     from texlab.docks.explain.base import Explainer, ExplanationView
@@ -42,9 +42,8 @@ class Side(QWidget):
         self.setAccessibleName(f"Explanation, {letter}")
         self.views: dict[int, ExplanationView] = {}
         self.marks: tuple[Mark, ...] = ()
-        self.heading = Label(name=f"{OWN}heading-{letter.lower()}")
+        self.heading = ShortLabel(name=f"{OWN}heading-{letter.lower()}")
         self.heading.setMargin(3)
-        self.heading.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.heading.hide()
         self._reason = Label(name=f"{OWN}reason-{letter.lower()}", muted=True, wraps=True)
         self._reason.setAlignment(Qt.AlignmentFlag.AlignCenter)

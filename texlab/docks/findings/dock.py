@@ -114,12 +114,14 @@ class FindingsDock(FramedDock):
     def question(self, scene: Scene) -> Question | None:
         """Ask for the pictures of what was found."""
         column, exemplar = scene.selected, scene.exemplar
+        tried = before_and_after(self._tried, scene.columns)
         if column is None or column.result is None or column.status != "finished":
-            self.why = ""
+            self.why = tried
             return None
         found = column.findings
         if not found:
-            self.why = nothing_to_list(column)
+            # What was tried against the last finding is told although the list has gone.
+            self.why = " ".join(filter(None, (tried, nothing_to_list(column))))
             return None
         image = column.result.image
 
@@ -128,6 +130,11 @@ class FindingsDock(FramedDock):
             return Found(column, found, to_picture(image), shown)
 
         return Question((self.name, Same(found), Same(image), Same(exemplar)), compute)
+
+    def present_nothing(self, reason: str) -> None:
+        """Say why there is no list, and offer nothing to be tried."""
+        super().present_nothing(reason)
+        self.apply.setEnabled(False)
 
     def show_answer(self, answer: Found) -> None:
         """List the findings; the one that was chosen stays chosen where it is still there."""

@@ -62,7 +62,12 @@ def explanation(found: Finding) -> str:
     """Return everything that is said of a finding, one paragraph each."""
     sure = "" if found.certainty == "finding" else "Look at this; it is not certain. "
     return "\n\n".join(
-        (f"{sure}{found.what}", f"Where: {found.where.words}.", f"Why: {found.why}", f"Try: {found.remedy.words}")
+        (
+            f"{sure}{found.what}",
+            f"Where: {found.where.words}.",
+            f"Why: {found.why}",
+            f"What to do: {found.remedy.words}",
+        )
     )
 
 

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
     QProgressBar,
-    QSizePolicy,
     QVBoxLayout,
 )
 
@@ -25,7 +24,7 @@ from texlab.docks.sweeps.words import arranged, headings, setting, sortings, sta
 from texlab.state.intentions import AskOnce, CellAsColumn, CellInWindow, RunSweep, StopSweep, TakeCell, Tell
 from texlab.state.sweeps import NO_SWEEP
 from texlab.style.text_size import grow_with_text
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import Label, ShortLabel
 from texlab.widgets.slider import Slider
 from texlab_core.engine.registry import find_method
 from texlab_core.errors import InputError
@@ -75,9 +74,7 @@ class SweepsDock(FramedDock):
         self.sheet.zoom_wanted.connect(self._zoom)
         self.sheet.compared.connect(self.compare)
         self.pair: PairView | None = None
-        self.heading = Label(name="sweeps-heading", muted=True)
-        # A long line must not widen the window.
-        self.heading.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.heading = ShortLabel(name="sweeps-heading", muted=True)
         self.progress = QProgressBar()
         self.progress.setObjectName("sweeps-progress")
         self.progress.setAccessibleName("Progress of the sweep")
@@ -217,7 +214,6 @@ class SweepsDock(FramedDock):
             self._leave_pair()
             self.sheet.show_grid(settings, columns, size, heads)
             self.heading.setText(" · ".join((*sweep_title(sweep), *filter(None, (shown.left_out,)))))
-            set_tip(self.heading, self.heading.text())
             is_texture = sweep.axes[0].name == TEXTURE
             self.sheet.show_words("texture and parameters" if is_texture else "parameters")
         self.cells = {each.cell.index: each for each in shown.cells}

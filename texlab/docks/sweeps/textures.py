@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QSizePolicy, QVBoxLayout, QWidget
 from texlab.docks.frame import replace_items
 from texlab.state.sweeps import Textures
 from texlab.widgets.calm_wheel import ChoiceBox
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import ShortLabel, set_tip
 from texlab_core.errors import ParamError
 from texlab_core.images.formats.kinds import READABLE_SUFFIXES
 from texlab_core.images.gallery import CLASSES, PREFIX
@@ -46,8 +46,7 @@ class TextureChoice(QWidget):
         self.box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         set_tip(self.box, "Which textures: a class of the gallery, the open files, a folder, or chosen files")
         replace_items(self.box, list(ITEMS))
-        self.words = Label(name=f"{name}-textures-words", muted=True)
-        self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.words = ShortLabel(name=f"{name}-textures-words", muted=True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2)

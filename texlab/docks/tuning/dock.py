@@ -6,11 +6,13 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
 from texlab.docks.base import Question
 from texlab.docks.frame import FramedDock, replace_items
 from texlab.docks.tuning.points import (
+    SEARCH,
+    SWEEP,
     D,
     V,
     axes_of,
@@ -28,7 +30,7 @@ from texlab.state.tuning import TuningPlan
 from texlab.style.text_size import grow_with_text
 from texlab.widgets.once import Once
 from texlab.widgets.picture_area import PictureArea
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import Label, ShortLabel
 from texlab.widgets.plots import SERIES, Plot
 from texlab_core.measures.registry import find_measure
 from texlab_core.sheets.own_line import own_measures
@@ -36,10 +38,10 @@ from texlab_core.sheets.sweep import Cell
 from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from texlab.docks.tuning.points import Placed
-    from texlab.widgets.plots import Role
+    from texlab.docks.tuning.points import Group, Placed
+    from texlab.widgets.plots import Line, Role
     from texlab_core.engine.inputs import ImageInput
 
 BUDGET = DEFAULT_BUDGET
@@ -82,9 +84,7 @@ class TuningDock(FramedDock):
         policy = self.progress.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.progress.setSizePolicy(policy)
-        self.status = Label(name="tuning-status", muted=True)
-        # A long line must not widen the window.
-        self.status.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.status = ShortLabel(name="tuning-status", muted=True)
         left = QVBoxLayout()
         left.setSpacing(2)
         for widget in (self.status, self.progress):
@@ -184,8 +184,8 @@ class TuningDock(FramedDock):
         self.plot.clear()
         self.points = []
         names: list[tuple[float, float, str, Role]] = []
-        for place, group in enumerate(groups_of(scene)):
-            role, line = SERIES[place % len(SERIES)] if group.title != "search" else ("muted", "dot")
+        groups = groups_of(scene)
+        for group, (role, line) in zip(groups, looks(groups), strict=True):
             there = placed(group.cells, x, y)
             found = [each for each in there if each is not None]
             self.points += found
@@ -194,7 +194,9 @@ class TuningDock(FramedDock):
                 if len(joined) > 1:
                     self.plot.curve([each.x for each in joined], [each.y for each in joined], role, line=line)
             if found:
-                self.plot.points([each.x for each in found], [each.y for each in found], role)
+                trials = group.title == SEARCH
+                across, up = [each.x for each in found], [each.y for each in found]
+                self.plot.points(across, up, role, size=5 if trials else 8, faint=trials)
                 names.append((found[-1].x, found[-1].y, group.title, role))
         # Where there is no room for all of them, those of the runs on top are seen.
         for each in reversed(names):
@@ -235,7 +237,6 @@ class TuningDock(FramedDock):
         elif shown.status == "stopped":
             words = f"Stopped after {_runs(len(shown.cells))}; click a point to take it"
         self.status.setText(words)
-        set_tip(self.status, words)
 
     # What the user does.
 
@@ -276,6 +277,14 @@ class TuningDock(FramedDock):
         if self.over is not None:
             chosen = self.scene.selected_id
             self.intention.emit(TakeCell(self.over.shown.cell, (chosen, self.over.shown.cell.index)))
+
+
+def looks(groups: Sequence[Group]) -> list[tuple[Role, Line]]:
+    """Return colour and line of each group: a method keeps its own when a search or a sweep comes."""
+    apart: dict[str, tuple[Role, Line]] = {SEARCH: ("muted", "dot"), SWEEP: ("text", "solid")}
+    left = [each for each in SERIES if each not in apart.values() and each[0] != "muted"]
+    methods = [each.title for each in groups if each.title not in apart]
+    return [apart.get(each.title) or left[methods.index(each.title) % len(left)] for each in groups]
 
 
 def _same_but_tuning(scene: Scene, other: Scene) -> bool:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from texlab_core.sheets.sweep import Cell
 
 D, V = "discriminability", "visual-difference"
+SEARCH, SWEEP = "search", "sweep"
 # How near the pointer must be, in pixels.
 REACH = 12.0
 # Parameters named in one line.
@@ -68,10 +69,10 @@ def groups_of(scene: Scene) -> tuple[Group, ...]:
     found: list[Group] = []
     trials = tuple(filter(usable, scene.tuning.cells))
     if trials:
-        found.append(Group("search", trials))
+        found.append(Group(SEARCH, trials))
     cells = tuple(sorted(filter(usable, scene.sweep.cells), key=lambda each: each.cell.index))
     if cells:
-        found.append(Group("sweep", cells, _curves(scene.sweep, cells)))
+        found.append(Group(SWEEP, cells, _curves(scene.sweep, cells)))
     by_method: dict[str, list[ShownCell]] = {}
     for each in filter(usable, scene.points):
         by_method.setdefault(find_method(each.cell.job.method).title, []).append(each)
