@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.stub_method import StubParams, exemplar, stub  # noqa: F401
+from tests.stub_method import Gate, StubParams, exemplar, stub  # noqa: F401
 from texlab.runs.controller import Controller
 from texlab.state.chosen import Column, Sample, State
 from texlab.state.scene import Probe
@@ -129,11 +129,15 @@ def test_cells_wait_until_their_method_is_loaded(
     assert asked == [Need("stub", controller.exemplar.channels)]
 
 
-def test_a_sweep_is_stopped_with_what_it_has(qtbot: Any, controller: Controller) -> None:
+def test_a_sweep_is_stopped_with_what_it_has(
+    qtbot: Any, controller: Controller, monkeypatch: pytest.MonkeyPatch
+) -> None:
     plan = SweepPlan((Vary("level", tuple(level / 20 for level in range(30))),), 16, StubParams(rounds=60))
+    gate = Gate(monkeypatch, 3)
     controller.run_sweep(1, plan)
-    qtbot.waitUntil(lambda: len(controller.scene().sweep.cells) > 0)
+    qtbot.waitUntil(lambda: len(controller.scene().sweep.cells) == 3)
     controller.stop_sweep()
+    gate.open()
     stopped = controller.scene().sweep
     assert (stopped.status, stopped.running) == ("stopped", False)
-    assert 0 < len(stopped.cells) < 30
+    assert len(stopped.cells) == 3

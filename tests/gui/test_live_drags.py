@@ -124,15 +124,22 @@ class Counting(Dock):
     name: ClassVar[str] = "counting"
     title: ClassVar[str] = "Counting"
     help: ClassVar[str] = ""
-    rest_ms: ClassVar[int] = 200
+    # For ever, until the test has seen it.
+    rest_ms: ClassVar[int] = 10**7
 
     def __init__(self):
         super().__init__()
         self.shown = []
+        self.opened = threading.Event()
 
     def question(self, scene):
         number = float(scene.columns[0].metrics["number"])
-        return Question((number,), lambda should_stop: number)
+
+        def compute(should_stop):
+            self.opened.wait(60)
+            return number
+
+        return Question((number,), compute)
 
     def present(self, answer):
         self.shown.append(answer)
@@ -150,11 +157,17 @@ def test_a_dock_rests_between_answers_and_ends_with_the_newest(qtbot):
     image = np.zeros((4, 4, 3), np.float32)
     for number in range(20):
         host.show_scene(scene_of(column_of(image, metrics={"number": number})))
-        qtbot.waitUntil(lambda: True)
     assert host.busy
+    dock.opened.set()
+    qtbot.waitUntil(lambda: bool(dock.shown))
+    # The newest waits for the end of the rest.
+    assert host._rest.isActive()
+    assert host.busy
+    assert dock.shown == [0]
+    host._rested.setRemainingTime(0)
+    host._rest.start(0)
     qtbot.waitUntil(lambda: not host.busy)
-    assert dock.shown[-1] == 19
-    assert len(dock.shown) < 20
+    assert dock.shown == [0, 19]
     host.close()
 
 

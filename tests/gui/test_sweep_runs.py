@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import os
 import threading
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from sweep_bench import LEFT, PATIENCE_MS, choose, complete, enter, make_bench, set_range, start  # noqa: F401
 
-from tests import stub_method
-from tests.stub_method import StubParams, exemplar, running, stub  # noqa: F401
+from tests.stub_method import Gate, StubParams, exemplar, running, stub  # noqa: F401
 from texlab.state.chosen import Column
 from texlab_core.engine.run import run
 
@@ -54,23 +52,6 @@ def test_the_size_of_the_columns(qtbot, bench):
     assert size.width() * 3 == pytest.approx(size.height() * 4, abs=3)
 
 
-class Gate:
-    """Lets so many cells of the stub finish, and holds those that begin later until it is opened."""
-
-    def __init__(self, monkeypatch, count):
-        self._opened, self._count = threading.Event(), count
-        monkeypatch.setattr(stub_method, "time", SimpleNamespace(sleep=self._nap))
-
-    def _nap(self, _):
-        here = threading.get_ident()
-        # Threads are used again: the cell at work is the last one that this thread has begun.
-        if max(place for place, thread in enumerate(running) if thread == here) >= self._count:
-            self._opened.wait(PATIENCE_MS / 1000)
-
-    def open(self):
-        self._opened.set()
-
-
 def sweep_threads():
     return [each.name for each in threading.enumerate() if each.name.startswith("sweep")]
 
@@ -80,7 +61,6 @@ def test_the_sheet_fills_while_it_runs_and_stops_at_once(qtbot, bench, monkeypat
     here = bench(Column(1, "stub", StubParams(rounds=100)))
     dock = here.dock
     set_range(qtbot, dock.panel.across, "seed", "1", "40", "40")
-    running.clear()
     gate = Gate(monkeypatch, 3)
     start(qtbot, dock)
     qtbot.waitUntil(dock.stop_button.isEnabled)
@@ -135,13 +115,12 @@ def test_cells_wait_for_the_places_of_the_columns(qtbot, bench):
     running.clear()
     start(qtbot, here.dock)
     qtbot.waitUntil(lambda: here.dock.running)
-    qtbot.wait(50)
+    # A cell stands before the places.
+    qtbot.waitUntil(lambda: bool(slots._waiting))
     assert running == []
     slots.release()
     qtbot.waitUntil(lambda: not here.dock.running, timeout=PATIENCE_MS)
-    # The thread that loads methods in advance may have come by; it needs no place.
-    warming = {each.ident for each in threading.enumerate() if each.name == "texlab-warming"}
-    assert len([each for each in running if each not in warming]) == 6
+    assert len(running) == 6
     # A sweep that waits can be stopped as well.
     assert slots.acquire(lambda: False)
     start(qtbot, here.dock)
