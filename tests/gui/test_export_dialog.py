@@ -75,6 +75,45 @@ def test_a_column_is_written_with_its_own_seed(explorer: Any, qtbot: Any) -> Non
     assert item.result.image is result_image(explorer, column_id)
 
 
+def test_the_names_follow_the_columns(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
+    session, (first, second) = explorer.session, ids(explorer)
+    opened.out.setText(str(tmp_path))
+    opened.pattern.setText("{title}-{seed}-{size}")
+    for row in range(2):
+        opened.columns.item(row).setCheckState(Qt.CheckState.Checked)
+
+    def shows(*more: str) -> bool:
+        """Whether what is shown is what is asked for now."""
+        request = opened.request()
+        wanted = "\n".join(foreseen(request, column_items(explorer.controller, request.columns)))
+        return opened.names.text() == wanted and all(each in wanted for each in more)
+
+    qtbot.waitUntil(shows)
+    session.set_column_seed(first, 41)
+    qtbot.waitUntil(lambda: shows("-41-"))
+    session.set_size((24, 24))
+    qtbot.waitUntil(lambda: shows("-41-24x24"))
+    session.rename_column(first, "Mine")
+    qtbot.waitUntil(lambda: shows("Mine-41-24x24"))
+    assert opened.columns.things[0] == (first, "Mine")
+    # What was ticked stays so; what was emptied is not filled.
+    opened.columns.item(1).setCheckState(Qt.CheckState.Unchecked)
+    session.remove_column(second)
+    qtbot.waitUntil(lambda: opened.columns.things == [(first, "Mine")])
+    assert opened.columns.ticked == (first,)
+    opened.out.clear()
+    session.undo()
+    qtbot.waitUntil(lambda: len(opened.columns.things) == 2)
+    assert opened.columns.ticked == (first,)
+    assert opened.names.text() == "Say where to write to."
+    # An animation is of the column that is chosen.
+    opened.kind.setCurrentIndex(2)
+    for column, title in opened.columns.things:
+        session.select(column)
+        qtbot.waitUntil(lambda title=title: opened.names.text().endswith(f", of {title}"))
+    wait_idle(qtbot, explorer)
+
+
 def test_a_figure_of_all_columns(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:
     opened.kind.setCurrentIndex(1)
     opened.out.setText(str(tmp_path / "a.txt"))
@@ -179,7 +218,9 @@ def test_what_is_found_for_another_folder_is_no_leave_to_replace(
     run(qtbot, opened)
     # Its answer comes with the next turn of the loop, at the soonest.
     opened.out.setText(str(other))
-    qtbot.waitUntil(lambda: opened.message.text() == "Nothing was written: the fields were changed meanwhile.")
+    qtbot.waitUntil(
+        lambda: opened.message.text() == "Nothing was written: what is asked for has changed meanwhile."
+    )
     assert opened.run_button.text() == "Export"
     run(qtbot, opened)
     qtbot.waitUntil(lambda: opened.message.text().startswith("One file is there already"))

@@ -33,6 +33,20 @@ class TickList(QListWidget):
                 checked = Qt.CheckState.Checked if number in ticked else Qt.CheckState.Unchecked
                 item.setCheckState(checked)
 
+    def tick(self, ticked: Collection[int]) -> None:
+        """Tick these and no others, without telling anyone."""
+        with QSignalBlocker(self):
+            for row, (number, _) in enumerate(self.things):
+                state = Qt.CheckState.Checked if number in ticked else Qt.CheckState.Unchecked
+                self.item(row).setCheckState(state)
+        self.viewport().update()
+
+    @property
+    def things(self) -> list[tuple[int, str]]:
+        """Number and title of everything that is listed."""
+        items = (self.item(row) for row in range(self.count()))
+        return [(int(item.data(Qt.ItemDataRole.UserRole)), item.text()) for item in items]
+
     @property
     def ticked(self) -> tuple[int, ...]:
         """Numbers of what is ticked, in the order of the list."""

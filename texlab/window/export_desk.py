@@ -14,6 +14,7 @@ from PySide6.QtGui import QDesktopServices, QGuiApplication
 from texlab.columns.status import known_numbers
 from texlab.columns.titles import titles
 from texlab.runs.column_run import job_of
+from texlab.widgets.once import Once
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab.window.run_dialog import RunDesk
 from texlab_core.errors import InputError
@@ -53,6 +54,8 @@ class Outcome:
     note: str = ""
 
 
+# While a control is dragged, many changes become one.
+FOLLOW_MS = 100
 _BITS: dict[str, Bits | None] = {"": None, "8": 8, "16": 16, "float": "float"}
 
 
@@ -66,9 +69,13 @@ class ExportDesk(RunDesk):
         self._settings = settings
         self._controller = controller
         self.written: tuple[Path, ...] = ()
+        # What the dialog was told of last.
+        self._told: tuple[object, ...] = ()
+        self._late = Once(window, FOLLOW_MS, self._follow)
+        controller.scene_changed.connect(lambda _: self._look())
 
     def open(self) -> None:
-        """Show the dialog with the columns that there are now."""
+        """Show the dialog, which follows the columns from then on."""
         if self.dialog is None:
             self.dialog = ExportDialog(self._window)
             self.dialog.asked.connect(self._run)
@@ -76,13 +83,38 @@ class ExportDesk(RunDesk):
             self._connect(self.dialog, self.dialog.show_share, self._done)
             self.dialog.folder_wanted.connect(self._show_folder)
             self.dialog.path_wanted.connect(self._copy_path)
+        self._propose()
+        self._tell((self._controller.session.selected_id,))
+        self._show(self.dialog)
+
+    def _now(self) -> tuple[object, ...]:
         session = self._controller.session
-        self.dialog.set_columns(list(column_titles(self._controller).items()), session.selected_id)
+        return session.state, session.selected_id, self._controller.exemplar, column_titles(self._controller)
+
+    def _look(self) -> None:
+        """See whether anything that the dialog shows has changed."""
+        if self.dialog is not None and self.dialog.isVisible() and self._now() != self._told:
+            self._late.start()
+
+    def _follow(self) -> None:
+        if self.dialog is None or not self.dialog.isVisible():
+            return
+        if self._controller.exemplar is not self._told[2]:
+            self._propose()
+        self._tell(self.dialog.columns.ticked)
+
+    def _propose(self) -> None:
+        """Propose where to write to, and say how deep the exemplar is."""
         exemplar = self._controller.exemplar
-        if exemplar is not None:
+        if exemplar is not None and self.dialog is not None:
             self.dialog.set_targets(self._folder(), safe_part(Path(exemplar.name.removeprefix("gallery:")).stem))
             self.dialog.set_depth(exemplar.depth)
-        self._show(self.dialog)
+
+    def _tell(self, ticked: Sequence[int]) -> None:
+        """Let the dialog offer the columns that there are now."""
+        assert self.dialog is not None
+        self._told = self._now()
+        self.dialog.set_columns(list(column_titles(self._controller).items()), ticked)
 
     def _folder(self) -> str:
         """Return where results went last, else where pictures are."""

@@ -17,7 +17,7 @@ from texlab.window.run_dialog import RunDialog, with_text
 from texlab_core.sheets.export_names import FIELDS, PATTERN
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from texlab_core.images.formats.writing import Bits
 
@@ -103,7 +103,7 @@ class ExportDialog(RunDialog):
         self._sound = False
         # What the user was told would be replaced; another press of the button means these alone.
         self._named: frozenset[Path] = frozenset()
-        # A field was edited while it ran.
+        # A field or a column was edited while it ran.
         self._outdated = False
         # The file dialog has asked about this one.
         self._agreed = ""
@@ -235,9 +235,12 @@ class ExportDialog(RunDialog):
         words = "floats" if depth == "float" else f"{depth} bits"
         self.bits.setItemText(0, f"{own} ({words})")
 
-    def set_columns(self, columns: Sequence[tuple[int, str]], chosen: int) -> None:
-        """Offer columns by id and title; the chosen one is ticked."""
-        self.columns.offer(columns, (chosen,))
+    def set_columns(self, columns: Sequence[tuple[int, str]], ticked: Collection[int]) -> None:
+        """Offer columns by id and title, some of them ticked, and foresee what would be written of them now."""
+        if list(columns) != self.columns.things:
+            self.columns.offer(columns, ticked)
+        else:
+            self.columns.tick(ticked)
         self._edited()
 
     def request(self) -> ExportRequest:
@@ -271,7 +274,7 @@ class ExportDialog(RunDialog):
         self.bar.setValue(0)
         if self._outdated:
             # They belong to what the fields said before.
-            self.show_idle("Nothing was written: the fields were changed meanwhile.")
+            self.show_idle("Nothing was written: what is asked for has changed meanwhile.")
             return
         self._named = frozenset(paths)
         names = [path.name for path in paths]

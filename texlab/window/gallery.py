@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtGui import QIcon, QImage, QPixmap
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
+from PySide6.QtGui import QIcon, QImage, QPixmap, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
+from texlab.widgets.once import Once
 from texlab.widgets.plain import set_tip
 from texlab.window.strip import ExemplarStrip
 
@@ -61,6 +62,10 @@ class GalleryView(QWidget):
         self.search.textChanged.connect(self._filter)
         self.tree.itemClicked.connect(self._picked)
         self.tree.itemActivated.connect(self._picked)
+        self._room = self.tree.viewport()
+        self._room.installEventFilter(self)
+        # The rows have their new places when the resize has been handled.
+        self._late = Once(self, 0, self._show_whole)
 
     def show_entries(self, entries: Iterable[tuple[str, str, str, str, str]]) -> None:
         """List (name, class, title, tooltip, further words to find it by) in the order given."""
@@ -109,11 +114,33 @@ class GalleryView(QWidget):
             self.tree.clearSelection()
         elif self.tree.currentItem() is not item:
             self.tree.setCurrentItem(item)
+            self._show_whole()
+
+    def _show_whole(self) -> None:
+        """Scroll as little as needed, so that nothing of the chosen texture is cut off."""
+        item = self.tree.currentItem()
+        if item is not None and item.isSelected() and not item.isHidden():
             self.tree.scrollToItem(item)
+            # Qt leaves out the last line of pixels.
+            beyond = self.tree.visualItemRect(item).bottom() - self._room.rect().bottom()
+            bar = self.tree.verticalScrollBar()
+            bar.setValue(bar.value() + max(0, beyond))
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Keep the chosen texture whole where the list changes its height; not where it was scrolled away."""
+        if watched is self._room and isinstance(event, QResizeEvent):
+            item = self.tree.currentItem()
+            before = self._room.rect()
+            before.setHeight(event.oldSize().height())
+            if item is not None and self.tree.visualItemRect(item).intersects(before):
+                self._late.start()
+        return super().eventFilter(watched, event)
 
     def _picked(self, item: QTreeWidgetItem) -> None:
         name = item.data(0, _NAME)
         if name:
+            # What was clicked may stand at the edge.
+            self._show_whole()
             self.chosen.emit(name)
         else:
             item.setExpanded(not item.isExpanded())
@@ -134,3 +161,4 @@ class GalleryView(QWidget):
                 item.setHidden(not match)
                 shown += match
             head.setHidden(shown == 0)
+        self._show_whole()
