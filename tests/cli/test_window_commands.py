@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from tests.core.batch_tools import run_python
 from texlab_core.images.formats.reading import read_image
 
 if TYPE_CHECKING:
@@ -144,3 +145,13 @@ def test_a_screenshot_that_finds_no_room_leaves_what_was_there(tmp_path: Path) -
     assert done.stderr == f"texlab: {out}: cannot be written (File too large).\n"
     assert os.listdir(out.parent) == ["window.png"]
     assert out.read_bytes() == b"before"
+
+
+def test_what_shows_the_window_loads_no_reader_and_no_method() -> None:
+    code = (
+        "import sys\nimport texlab.app.start, texlab.window.main_window\n"
+        "late = ('texlab_core.documents', 'texlab_core.images', 'texlab_core.methods', 'cv2', 'numba', 'scipy')\n"
+        "print([name for name in sys.modules if name.startswith(late)])"
+    )
+    done = run_python("-c", code)
+    assert (done.stdout, done.stderr) == ("[]\n", "")
