@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QSlider, QSpinBox
 
 from tests.gui.conftest import drag, handle_point, hb, ids, result_image, wait_idle
+from texlab.window import gallery_thumbnails
 from texlab_core.engine.job import Job
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
@@ -190,6 +192,23 @@ def test_gallery_click_and_search(qtbot: Any, explorer: Explorer) -> None:
     qtbot.waitUntil(lambda: explorer.session.state.sample.source.name == "gallery:oriented-zebra", timeout=10_000)
     wait_idle(qtbot, explorer)
     assert explorer.controller.exemplar.size == (256, 256)
+
+
+def test_a_second_window_reads_no_texture_of_the_gallery_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[str] = []
+
+    def counted(name: str) -> Any:
+        read.append(name)
+        return as_exemplar(name)
+
+    monkeypatch.setattr("texlab_core.images.exemplar.as_exemplar", counted)
+    gallery_thumbnails._thumbnail.cache_clear()
+    names = ["gallery:oriented-zebra", "gallery:structured-pebbles"]
+    task = SimpleNamespace(should_stop=lambda: False, due=lambda: False)
+    first, second = (gallery_thumbnails.make_thumbnails(names, task) for _ in range(2))
+    assert read == names
+    assert [picture.shape for _, picture in first] == [(48, 48, 3)] * 2
+    assert all(again is picture for (_, picture), (_, again) in zip(first, second, strict=True))
 
 
 def drop(window: Any, mime: QMimeData) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,13 +74,11 @@ class Thumbnails(QObject):
 
 def make_thumbnails(names: list[str], task: Task) -> tuple[tuple[str, Picture], ...]:
     """Return small pictures of textures, reporting those made so far on the way."""
-    from texlab_core.images.exemplar import as_exemplar
-
     made: list[tuple[str, Picture]] = []
     for name in names:
         if task.should_stop():
             break
-        made.append((name, _small(as_exemplar(name).pixels)))
+        made.append((name, _thumbnail(name)))
         if task.due():
             task.progress(tuple(made))
     return tuple(made)
@@ -98,6 +96,16 @@ def make_several(sources: Sequence[Source], task: Task) -> tuple[tuple[int, Pict
             made.append((place, str(error)))
         task.progress(tuple(made))
     return tuple(made)
+
+
+@cache
+def _thumbnail(name: str) -> Picture:
+    """Return the small picture of a texture of the gallery; every window of the program has the same."""
+    from texlab_core.images.exemplar import as_exemplar
+
+    made = _small(as_exemplar(name).pixels)
+    made.flags.writeable = False
+    return made
 
 
 def _small(pixels: FloatImage) -> Picture:
