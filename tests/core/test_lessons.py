@@ -37,7 +37,7 @@ STEP: dict[str, Any] = {
     "size": {"width": 64, "height": 56},
     "seed": 7,
     "columns": [
-        {"method": "tiling", "parameters": {"mirror": True}, "title": "mirrored"},
+        {"method": "tiling", "parameters": {"mirror": True}, "title": "mirrored", "seed": 8},
         {"method": "heeger-bergen", "parameters": {"iterations": 1}},
     ],
     "chosen": 1,
@@ -108,6 +108,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a slider of another method": (changed("steps", 0, "series", "parameter", to="alpha"), "alpha"),
     "a slider out of range": (changed("steps", 0, "series", "values", to=[0, 51]), "51"),
     "a pixel beside the result": (changed("steps", 0, "pixel", "x", to=64), "64 x 56"),
+    "a column's negative seed": (changed("steps", 0, "columns", 0, "seed", to=-1), "seed"),
     "a negative seed": (changed("steps", 0, "seed", to=-1), "seed"),
     "a sentence too long": (changed("steps", 0, "sentence", to="a" * 161), "at most|1 to 160"),
     "a mark of no height": (changed("steps", 0, "marks", 0, "height", to=0), "height"),

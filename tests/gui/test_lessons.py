@@ -21,6 +21,7 @@ from texlab.state.intentions import GoToStep, LeaveLesson, NewLesson, OpenLesson
 from texlab.state.lesson_scene import LessonScene
 from texlab.storage.paths import config_dir
 from texlab.window import teacher
+from texlab.window.tabs_ahead import PAUSE_MS
 from texlab_core.documents.lessons import read_lesson
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.run import run
@@ -415,3 +416,62 @@ def test_the_dock_says_what_belongs_to_a_step_and_hides_the_answer(qtbot: Any, s
     assert [type(each) for each in sent] == [GoToStep, LeaveLesson, SaveStep, NewLesson]
     # A foreign name is text, whatever it looks like.
     assert item_of(dock, small).text(0) == "Small (3)"
+
+
+def test_ready_steps_find_every_tab_made(qtbot: Any, explorer: Explorer) -> None:
+    steps = [
+        {"sentence": "Laboratory.", "tab": {"name": "lab", "settings": {"experiments": page}}}
+        for page in ("lab-plane", "lab-keys")
+    ]
+    (config_dir() / "lessons").mkdir(parents=True)
+    tabs = [{"sentence": f"{name}.", "tab": {"name": name}} for name in ("spectrum", "pyramid", "maps")]
+    data = {**SMALL, "steps": [{"sentence": "Words alone."}, *tabs, *steps]}
+    (config_dir() / "lessons" / "tabs.json").write_text(json.dumps(data))
+    hosts = explorer.hosts
+    wanted = {"lessons", "lab", "spectrum", "pyramid", "maps"}
+    assert any(not hosts[name].is_made for name in wanted)
+    made: list[str] = []
+    for name, host in hosts.items():
+        host.made.connect(lambda _, name=name: made.append(name))
+    give(qtbot, explorer, "tabs")
+    assert not all(explorer.teacher.scene.ready)
+    wait_ready(qtbot, explorer)
+    assert all(hosts[name].is_made for name in wanted)
+    # Nobody makes more than the lesson shows.
+    assert set(made) <= wanted
+    lab = hosts["lab"].dock
+    pages, count = set(lab._pages), len(made)
+    assert {"lab-plane", "lab-keys"} <= pages
+    for place, step in enumerate(data["steps"]):
+        explorer.carrier.carry_out(GoToStep(place))
+        wait_idle(qtbot, explorer)
+        assert step.get("tab", {"name": "lessons"})["name"] == explorer.window.front_dock()
+    assert len(made) == count
+    assert set(lab._pages) == pages
+
+
+def test_a_lesson_that_is_left_makes_no_more_tabs(qtbot: Any, explorer: Explorer, small: str) -> None:
+    give(qtbot, explorer, small)
+    explorer.carrier.carry_out(LeaveLesson())
+    before = [name for name, host in explorer.hosts.items() if host.is_made]
+    qtbot.wait(5 * PAUSE_MS)
+    assert [name for name, host in explorer.hosts.items() if host.is_made] == before
+
+
+def test_columns_of_a_step_are_called_and_seeded_as_it_says(qtbot: Any, explorer: Explorer) -> None:
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    columns = [{"method": "pixels", "title": "at random"}, {"method": "tiling"}, {"method": "pixels", "seed": 9}]
+    step = {**SMALL["steps"][1], "columns": columns}
+    (folder / "names.json").write_text(json.dumps({**SMALL, "steps": [step]}))
+    give(qtbot, explorer, "names", own=True)
+    wait_ready(qtbot, explorer)
+    views = [explorer.workspace.columns[each] for each in ids(explorer)]
+    assert [view.method_box.label for view in views][:2] == ["at random", "Tiling"]
+    assert [each.result.job.seed for each in explorer.controller.scene().columns] == [1, 1, 9]
+    # And what is kept of it says the same.
+    explorer.carrier.carry_out(SaveStep("Again."))
+    qtbot.waitUntil(lambda: len(explorer.teacher.scene.lesson.steps) == 2)
+    wait_ready(qtbot, explorer)
+    kept = explorer.teacher.scene.lesson.steps[1].columns
+    assert [(each.title, each.seed) for each in kept] == [("at random", None), ("", None), ("", 9)]

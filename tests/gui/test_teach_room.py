@@ -31,6 +31,7 @@ from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label
 from texlab.widgets.scroll_room import ScrollRoom
 from texlab.widgets.status_line import StatusLine
+from texlab.window.teach_mode import readable
 
 if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
@@ -92,14 +93,21 @@ def test_pictures_stand_in_the_rows_in_which_they_are_largest(
     assert best_columns(count, width, height, 20) == across
 
 
-def test_lines_under_pictures_end_without_a_sign(qtbot: Any, taught: None) -> None:
+def test_lines_under_pictures_say_that_there_is_more(qtbot: Any, taught: None) -> None:
     line = StatusLine()
     qtbot.addWidget(line)
-    line.set_lines(1)
-    line.show_parts(["256 x 256", "kept from before", "1.25 s"])
+    parts = ["256 x 256", "kept from before", "1.25 s"]
+    line.show_parts(parts)
     line.show()
-    line.resize(250, line.sizeHint().height())
-    assert line.text() == "256 x 256"
+    whole = " · ".join(parts)
+    for lines in (1, 2):
+        line.set_lines(lines)
+        for width in range(40, line.fontMetrics().horizontalAdvance(whole) + 60, 15):
+            line.resize(width, line.sizeHint().height())
+            said = line.text().replace("\n", " · ")
+            assert said == whole or said.endswith("…")
+            assert lines_of(line) <= line.height()
+        assert said == whole
 
 
 def test_figures_beside_a_picture_have_all_their_lines(qtbot: Any, taught: None) -> None:
@@ -201,3 +209,21 @@ def test_in_teach_a_step_has_the_room_that_it_needs(qtbot: Any, explorer: Explor
     assert explorer.hosts["histograms"].dock.settings()["log"] is False
     assert not window.actions_by_name["tile"].isChecked()
     window.actions_by_name["layout-explore"].trigger()
+
+
+@pytest.mark.parametrize(
+    ("count", "chosen", "most", "shown"),
+    [
+        (4, 1, 4, [0, 1, 2, 3]),
+        (4, 1, 3, [0, 1, 2]),
+        (4, 3, 3, [1, 2, 3]),
+        (4, 3, 1, [3]),
+        (2, 1, 0, [1]),
+        (1, 0, 5, [0]),
+        (0, 0, 3, []),
+    ],
+)
+def test_as_many_columns_as_have_room_stand_side_by_side(
+    count: int, chosen: int, most: int, shown: list[int]
+) -> None:
+    assert readable(range(count), chosen, most) == shown

@@ -100,6 +100,13 @@ class Dock(OwnKeys, QWidget):
         """Set controls by name, as a user would; return one clause for each that cannot be set."""
         return take_control_settings(self, f"{self.name}-", wanted)
 
+    def is_prepared(self, wanted: Mapping[str, Any]) -> bool:
+        """Return whether everything is made that is shown with these settings."""
+        return True
+
+    def prepare(self, wanted: Mapping[str, Any]) -> None:
+        """Make what will be shown with these settings, and show it not yet."""
+
     def set_seen(self, seen: bool) -> None:
         """Take note of whether any part of the dock can be seen; a tab behind another one cannot."""
 

@@ -94,6 +94,10 @@ class DockHost(QObject):
         assert self._dock is not None
         return self._dock
 
+    def make(self) -> None:
+        """Make the dock now, before anybody looks at it."""
+        _ = self.dock
+
     @property
     def is_made(self) -> bool:
         """Whether there is a dock already."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import logging
 from dataclasses import dataclass
 from functools import partial
@@ -233,7 +234,7 @@ def _make(shared: Shared, opened: Opened, place: int, task: TaskLike) -> _Made:
         if step.series is not None:
             base, first = step.columns[step.series.column], columns[step.series.column]
             columns += [
-                type(first)(first.id, first.method, step.series.at(base, value).params(), first.inputs, first.size)
+                dataclasses.replace(first, params=step.series.at(base, value).params())
                 for value in step.series.values
             ]
         for column in columns:

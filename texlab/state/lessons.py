@@ -38,7 +38,7 @@ def state_of(step: LessonStep, pictures: StepPictures, before: State, first_id: 
         Id of the first column; columns at the same place keep theirs from step to step.
     """
     columns = tuple(
-        Column(first_id + place, each.method, each.params(), inputs, each.size)
+        Column(first_id + place, each.method, each.params(), inputs, each.size, each.title, seed=each.seed)
         for place, (each, inputs) in enumerate(zip(step.columns, pictures.inputs, strict=True))
     )
     sample = pictures.sample or before.sample
@@ -133,7 +133,9 @@ def _column(column: Column) -> StepColumn:
             "method": column.method,
             "parameters": column.params.to_json(),
             "inputs": {name: taken.to_json() for name, taken in inputs.items()},
+            "title": column.name,
             **({} if column.size is None else {"size": _size(column.size)}),
+            **({} if column.seed is None else {"seed": column.seed}),
         }
     )
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QRect, QSize, Qt
 from PySide6.QtWidgets import QSizePolicy
 
-from texlab.style.text_size import is_teaching
+from texlab.style.text_size import whole_words
 from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
@@ -96,12 +96,14 @@ class StatusLine(Label):
         text = self._wrapped(shown)
         while len(shown) > 1 and not self._fits(text):
             shown.pop()
-            # Who reads from the back row cannot ask for more; whoever can finds all of it in the tip.
-            text = self._wrapped(shown) if is_teaching() else f"{self._wrapped(shown)} {MORE}"
+            text = f"{self._wrapped(shown)} {MORE}"
         words = text.split(" ")
         while len(words) > 1 and not self._fits(text):
             words.pop()
             text = f"{' '.join(words).rstrip(' ' + MORE)} {MORE}"
+        if not self._fits(text):
+            # A single word, or a part of it.
+            text = whole_words(f"{words[0]}{MORE}", self.fontMetrics(), self.width())
         self.setText(text)
 
     def _wrapped(self, parts: Sequence[str]) -> str:

@@ -17,7 +17,7 @@ from texlab.window.notes_window import NotesWindow
 from texlab.window.overlay import Overlay
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from texlab.columns.workspace import Workspace
     from texlab.docks.base import Dock
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 EXEMPLAR = 0
 # The presenter stands nearer than the first row.
 NOTES_FACTOR = 1.2
-# The columns of a step stand side by side as long as each has room for so many letters.
-LETTERS = 30
+# As many columns of a step stand beside the exemplar as have room for so many letters each.
+LETTERS = 18
 # Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
 SHOW_ALL = ("lab", "lessons")
 SHARE_WITHOUT_COLUMNS = 0.6
@@ -151,7 +151,7 @@ class TeachMode(QObject):
         columns = [column.id for column in self._session.state.columns]
         self._hidden.clear()
         room = self._window.width() // (LETTERS * self._window.fontMetrics().averageCharWidth())
-        self._kept = set(columns) if 1 < len(columns) < room else set()
+        self._kept = set(readable(columns, step.chosen, room - 1))
         # Experiments and drawings show the exemplar themselves, where there is one.
         alone = not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL)
         self._window.actions_by_name["tab-alone"].setChecked(alone)
@@ -260,3 +260,20 @@ class TeachMode(QObject):
             self._window.showMaximized()
         else:
             self._window.showNormal()
+
+
+def readable(columns: Sequence[int], chosen: int, most: int) -> list[int]:
+    """Return the columns that stand side by side: all that there is room for, with the chosen one among them.
+
+    Parameters
+    ----------
+    columns
+        Ids of all columns of a step.
+    chosen
+        Place of the chosen one.
+    most
+        How many have room; one always has.
+    """
+    most = max(most, 1)
+    first = min(max(0, chosen + 1 - most), max(0, len(columns) - most))
+    return list(columns[first : first + most])

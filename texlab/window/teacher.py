@@ -26,6 +26,7 @@ from texlab.state.scene import Probe
 from texlab.style.pictures import Mark
 from texlab.widgets.settling import settle_all
 from texlab.window.lesson_desk import LessonDesk, read, tab_of
+from texlab.window.tabs_ahead import TabsAhead
 from texlab_core.documents.lesson_parts import LessonError
 from texlab_core.documents.lessons import MAX_STEPS
 from texlab_core.errors import InputError
@@ -97,6 +98,8 @@ class Teacher(QObject):
         self.runner.opened.connect(self._begin)
         self.runner.advanced.connect(self._tell)
         self.runner.failed.connect(controller.problem)
+        self.tabs = TabsAhead(hosts, self)
+        self.tabs.advanced.connect(self._tell)
         presenter.painted.connect(self._painted)
         actions = window.actions_by_name
         actions["lessons"].triggered.connect(lambda: window.raise_dock("lessons"))
@@ -195,8 +198,13 @@ class Teacher(QObject):
         self._to_show = step
         if not stay:
             self._show_tab(step)
-        self.runner.prepare_from(place)
+        self._prepare(opened.lesson, place)
         self._tell()
+
+    def _prepare(self, lesson: Lesson, place: int) -> None:
+        """Make everything ready, from this step on."""
+        self.runner.prepare_from(place)
+        self.tabs.want((*lesson.steps[place:], *lesson.steps[:place]))
 
     def _probe(self, step: LessonStep) -> Probe | None:
         pixel = step.pixel
@@ -231,8 +239,9 @@ class Teacher(QObject):
 
     def _tell(self) -> None:
         """Tell everybody where the lesson is."""
-        count = 0 if self._scene.lesson is None else len(self._scene.lesson.steps)
-        ready = tuple(self.runner.ready(place) for place in range(count))
+        steps = () if self._scene.lesson is None else self._scene.lesson.steps
+        count = len(steps)
+        ready = tuple(self.runner.ready(place) and self.tabs.ready(step) for place, step in enumerate(steps))
         self._scene = dataclasses.replace(
             self._scene,
             ready=ready,
@@ -254,6 +263,7 @@ class Teacher(QObject):
             return
         self._asked += 1
         self.runner.leave_lesson()
+        self.tabs.want(())
         self._versions.clear()
         aside, self._aside, self._opened, self._to_show = self._aside, None, None, None
         self._scene = LessonScene(folder=self._scene.folder, shelf=self._scene.shelf)
@@ -316,7 +326,7 @@ class Teacher(QObject):
             self._go(place, stay=True)
             return
         self._scene = dataclasses.replace(self._scene, place=place)
-        self.runner.prepare_from(place)
+        self._prepare(lesson, place)
         self._tell()
 
     def _undo(self, *, redo: bool) -> None:

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from texlab_core.engine.inputs import Crop
+from texlab_core.engine.job import check_seed
 from texlab_core.engine.params import describe, frozen_mapping
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_from_json, size_to_json
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _MAX_SIDE = 2**16
 _WORD = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 MAX_VALUES = 12
+COLUMN_TITLE = 80
 Setting = bool | int | float | str
 
 
@@ -187,6 +189,8 @@ class StepColumn:
         Its own size; None takes the step's.
     title
         Above its picture; empty takes the method's.
+    seed
+        Its own; None takes the step's.
     """
 
     method: str
@@ -194,11 +198,12 @@ class StepColumn:
     inputs: Mapping[str, Taken] = field(default_factory=dict)
     size: tuple[int, ...] | None = None
     title: str = ""
+    seed: int | None = None
 
     @classmethod
     def from_json(cls, data: object) -> Self:
         """Read it; the method checks its parameters."""
-        fields = Fields(data, ("method", "parameters", "inputs", "size", "title"))
+        fields = Fields(data, ("method", "parameters", "inputs", "size", "title", "seed"))
         name = fields.data.get("method")
         if not isinstance(name, str):
             raise LessonError(f"columns: method must be the id of a method, got {shorten(name)}.")
@@ -223,7 +228,10 @@ class StepColumn:
             if spec.required and spec.name not in ("exemplar", *taken):
                 raise LessonError(f"inputs: {method.title} needs {spec.name}, and there is none.")
         size = fields.part("size", lambda each: size_from_json(each, method.dimensions))
-        return cls(name, frozen_mapping(kept), frozen_mapping(taken), size, fields.text("title", 60))
+        seed = check_seed(fields.data["seed"]) if "seed" in fields.data else None
+        return cls(
+            name, frozen_mapping(kept), frozen_mapping(taken), size, fields.text("title", COLUMN_TITLE), seed
+        )
 
     def params(self) -> Params:
         """Return all its parameters."""
@@ -239,7 +247,9 @@ class StepColumn:
             data["inputs"] = {key: each.to_json() for key, each in self.inputs.items()}
         if self.size is not None:
             data["size"] = size_to_json(self.size)
-        return {**data, "title": self.title} if self.title else data
+        if self.title:
+            data["title"] = self.title
+        return data if self.seed is None else {**data, "seed": self.seed}
 
 
 @dataclass(frozen=True)

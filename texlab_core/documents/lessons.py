@@ -69,7 +69,7 @@ class LessonStep:
     size
         Height and width of the results.
     seed
-        Of all columns and of the drawing.
+        Of the drawing, and of all columns that have none of their own.
     columns
         From left to right, at most 8.
     chosen

@@ -112,7 +112,8 @@ def _job(lesson: Lesson, step: LessonStep, column: StepColumn, exemplar: ImageIn
     size = column.size or default_size(step.size, find_method(column.method).dimensions)
     if reduced:
         size = tuple(min(side, REDUCED_SIDE if len(size) == 2 else REDUCED_SIDE // 4) for side in size)
-    return Job(method=column.method, inputs=inputs, params=column.params(), size=size, seed=step.seed)
+    seed = step.seed if column.seed is None else column.seed
+    return Job(method=column.method, inputs=inputs, params=column.params(), size=size, seed=seed)
 
 
 def picture(lesson: Lesson, taken: Taken, *, reduced: bool = False) -> ImageInput:

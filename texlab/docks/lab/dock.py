@@ -21,6 +21,8 @@ from texlab.state.scene import are_same
 from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from texlab.docks.lab.page import LabPage
     from texlab.state.scene import Scene
     from texlab.style.theme import Theme
@@ -38,6 +40,10 @@ PAGES: tuple[type[LabPage], ...] = (
     HomogeneityPage,
     SpherePage,
 )
+
+
+# The setting that says which experiment is chosen.
+CHOSEN = "experiments"
 
 
 class Answered(NamedTuple):
@@ -84,7 +90,9 @@ class LabDock(Dock):
     @property
     def page(self) -> LabPage:
         """The chosen experiment."""
-        kind = PAGES[self.bar.currentIndex()]
+        return self._made(PAGES[self.bar.currentIndex()])
+
+    def _made(self, kind: type[LabPage]) -> LabPage:
         page = self._pages.get(kind.name)
         if page is None:
             page = self._pages[kind.name] = kind()
@@ -172,6 +180,16 @@ class LabDock(Dock):
         self._folded = folded
         for page in self._pages.values():
             page.fold_controls(folded)
+
+    def is_prepared(self, wanted: Mapping[str, Any]) -> bool:
+        """Return whether the experiment that is wanted is made."""
+        return not any(kind.name == wanted.get(CHOSEN) and kind.name not in self._pages for kind in PAGES)
+
+    def prepare(self, wanted: Mapping[str, Any]) -> None:
+        """Make the experiment that is wanted; the one that is chosen stays in front."""
+        for kind in PAGES:
+            if kind.name == wanted.get(CHOSEN):
+                self._made(kind).set_seen(False)
 
     def set_seen(self, seen: bool) -> None:
         """Take note of whether it can be seen."""
