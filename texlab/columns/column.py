@@ -14,6 +14,7 @@ from texlab.columns.foot import Foot
 from texlab.columns.grip import Grip
 from texlab.columns.history_popup import numbers_before
 from texlab.columns.numbers_popup import NumbersPopup
+from texlab.style.text_size import is_teaching
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.short_box import ShortBox
@@ -47,6 +48,8 @@ class ColumnView(Cell):
         self.column_id = column_id
         self.scene: ColumnScene | None = None
         self._title: str | None = None
+        # What else stands above the picture, but for the menu, makes room for the title.
+        self._gives_way = False
         self.setProperty("chosen", False)
         self.setProperty("failed", False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -131,6 +134,7 @@ class ColumnView(Cell):
         self._title = title
         self.method_box.set_label(title)
         set_tip(self.method_box, f"{title}\nClick: another method for this column" if title else "The method")
+        self._give_way()
 
     def set_badge(self, letter: str) -> None:
         """Say which of two compared columns it is; "" for none of them."""
@@ -148,6 +152,26 @@ class ColumnView(Cell):
         """Keep the bar of progress at the lower edge of the picture."""
         super().resizeEvent(event)
         self._place_progress()
+        self._give_way()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the font."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._give_way()
+
+    def _give_way(self) -> None:
+        """Leave the room above the picture to the title where one teaches and it is longer than what is left."""
+        extras = self.grip.sizeHint().width() + self.run_button.sizeHint().width()
+        needed = self.method_box.whole_width + self.menu_button.sizeHint().width() + extras
+        self._gives_way = is_teaching() and needed > self.width()
+        self.grip.setVisible(not self._gives_way)
+        self._show_buttons()
+
+    def _show_buttons(self) -> None:
+        busy = self.scene is not None and self.scene.status in ("running", "waiting")
+        self.stop_button.setVisible(busy)
+        self.run_button.setVisible(not busy and not self._gives_way)
 
     def _place_progress(self) -> None:
         height = self.progress.sizeHint().height()
@@ -194,8 +218,7 @@ class ColumnView(Cell):
             self.line.setProperty("role", role)
             _polish(self.line)
         busy = scene.status in ("running", "waiting")
-        self.stop_button.setVisible(busy)
-        self.run_button.setVisible(not busy)
+        self._show_buttons()
         self.actions_by_name["go-on"].setEnabled(scene.resumable and not busy)
         for name in ("export", "use"):
             self.actions_by_name[name].setEnabled(scene.result is not None)

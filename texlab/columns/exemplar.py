@@ -14,6 +14,7 @@ from texlab.columns.cell import Cell
 from texlab.columns.exemplar_panel import ExemplarPanel
 from texlab.columns.foot import Foot
 from texlab.state.changes import as_a_whole, at_full_size, reduced_words
+from texlab.style.text_size import follow_text, is_teaching, text_scale
 from texlab.widgets.number_box import ShareBox
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.settling import Settling
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
 MIN_CROP = 8
 SETTLE_MS = 300
+# Half the side of a handle of the crop, in pixels beside text of the usual size.
+HANDLE = 5
 _ARROWS = {
     Qt.Key.Key_Up: (-1, 0),
     Qt.Key.Key_Down: (1, 0),
@@ -112,6 +115,7 @@ class ExemplarView(Cell):
         self._name = ""
         self._crop: Crop | None = None
         self._size: tuple[int, int] | None = None
+        follow_text(self, self._resize_box)
         self._rest = Settling(self, SETTLE_MS, self._settle)
         self.pane.installEventFilter(self)
         self.choices = QToolButton()
@@ -237,8 +241,13 @@ class ExemplarView(Cell):
         self._elide()
 
     def _elide(self) -> None:
+        metrics = self.title.fontMetrics()
+        # Where one teaches, the name comes first; the menu of the picture opens the same panel.
+        needed = metrics.horizontalAdvance(self._name) + self.more.sizeHint().width() + self.head.spacing() + 8
+        self.more.setVisible(not (is_teaching() and needed > self.width()))
+        self.head.activate()
         room = self.title.width()
-        self.title.setText(self.title.fontMetrics().elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
+        self.title.setText(metrics.elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
 
     def _make_box(self) -> Any:
         """Make the crop box, once: it comes and goes with every crop."""
@@ -273,7 +282,20 @@ class ExemplarView(Cell):
         self.part_shown.emit()
 
     def _pen(self) -> Any:
-        return pg.mkPen(QColor("#ffd54a"), width=2)
+        return pg.mkPen(QColor("#ffd54a"), width=2 * text_scale(self))
+
+    def _resize_box(self) -> None:
+        """Make frame and handles as thick and large as the text asks for."""
+        scale = text_scale(self)
+        self._box.setPen(self._pen())
+        for handle in self._box.getHandles():
+            handle.radius = HANDLE * scale
+            for name in ("pen", "hoverPen"):
+                getattr(handle, name).setWidthF(scale)
+            handle.currentPen = handle.pen
+            handle.buildPath()
+            handle.viewTransformChanged()
+            handle.update()
 
     def _toggle(self, on: bool) -> None:
         if self._size is None:

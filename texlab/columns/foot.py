@@ -149,11 +149,17 @@ class Foot(QWidget):
         for place, label in enumerate(self.figures):
             has = place < len(self._shown)
             if has:
+                whole = self._shown[place].text
+                # The first one is always there: its value, where the title has no room.
+                first = not place and self.width_of(whole) > room and self.isVisible()
+                label.setText(self._shown[place].short if first else whole)
                 room -= self.width_of(self._shown[place].text) + (GAP if place else 0)
             label.setVisible(has and (room >= 0 or place == 0))
 
     def _fit_beside(self) -> None:
         """Show the first figures that stand whole under each other, and as many lines as are left."""
+        for label, figure in zip(self.figures, self._shown, strict=False):
+            label.setText(figure.text)
         width, room = self.width() - 2 * MARGIN, self.height()
         for place, label in enumerate(self.figures):
             needed = 0

@@ -94,12 +94,15 @@ class Figure:
     ----------
     text
         Title and value, with a mark where it became better or worse.
+    short
+        The value alone, for where the title has no room.
     tip
         What it says, what the mark is about, and what is known about its limits.
     """
 
     text: str
     tip: str
+    short: str = ""
 
 
 def figures(numbers: Mapping[str, float], before: Mapping[str, float] | None = None) -> list[Figure]:
@@ -120,7 +123,8 @@ def figures(numbers: Mapping[str, float], before: Mapping[str, float] | None = N
         if old is not None and each.text(old) != each.text(value) and each.better != "neither":
             mark = "▲" if (value < old) == (each.better == "lower") else "▼"
             tip.append(f"{'Better' if mark == '▲' else 'Worse'} than the result before: {each.text(old)}.")
-        made.append(Figure(f"{text} {mark}".rstrip(), "\n".join(tip)))
+        tip.insert(0, text)
+        made.append(Figure(f"{text} {mark}".rstrip(), "\n".join(tip), each.text(value)))
     return made
 
 

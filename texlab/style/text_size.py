@@ -18,6 +18,8 @@ CAPITALS = 1 / 40
 ZOOMS = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
 # How many times as large as other text the sentence of a lesson is: when teaching, else.
 SENTENCE = (1.2, 1.6)
+# The sign that something is left out.
+MORE = "…"
 # Sizes in pixels are made for lines of this height.
 USUAL_LINE = 15.0
 # Text that is smaller elsewhere is not smaller than this; it is that of Teach while one teaches.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QEvent, QRect, QSize, Qt
 from PySide6.QtWidgets import QSizePolicy
 
-from texlab.style.text_size import whole_words
+from texlab.style.text_size import MORE, whole_words
 from texlab.widgets.plain import Label, set_tip
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 LINES = 3
 SEPARATOR = " · "
-MORE = "…"
 _TALL = 10_000
 
 
