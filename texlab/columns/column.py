@@ -164,7 +164,8 @@ class ColumnView(Cell):
         """Leave the room above the picture to the title where one teaches and it is longer than what is left."""
         extras = self.grip.sizeHint().width() + self.run_button.sizeHint().width()
         needed = self.method_box.whole_width + self.menu_button.sizeHint().width() + extras
-        self._gives_way = is_teaching() and needed > self.width()
+        room = self.contentsRect().width() - self.head.count() * self.head.spacing()
+        self._gives_way = is_teaching() and needed > room
         self.grip.setVisible(not self._gives_way)
         self._show_buttons()
 
