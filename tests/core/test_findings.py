@@ -25,7 +25,7 @@ from texlab_core.findings.limits import PRECISION, RECALL, RULES, Fit, Rule, Ter
 from texlab_core.findings.registry import Case, Detector, Seen, detectors, failures, find_all, find_detector
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.measures.cuts import largest_cut_between
-from texlab_core.measures.registry import find_measure
+from texlab_core.measures.registry import Measure, find_measure
 from texlab_core.measures.subject import PreparedCache, Subject
 
 LABELS = Path(__file__).parents[1] / "data/labels/gallery"
@@ -354,14 +354,21 @@ def test_rules() -> None:
     assert rule_for("garbage", "msg") is None
 
 
-def test_a_batch_says_what_it_finds_and_counts_hints_apart() -> None:
+def test_a_batch_says_what_it_finds_and_counts_hints_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     from texlab_core.batch.page import _kinds
     from texlab_core.batch.pictures import finish
 
     exemplar = as_exemplar("gallery:stochastic-gravel", crop=Crop(0, 0, 64, 64))
     result = run(Job(method="tiling", inputs={"exemplar": exemplar}, size=(128, 128)))
+    expected = tuple(each.sentence for each in findings_of(result))
+    counted: list[str] = []
+    real = Measure.of
+    monkeypatch.setattr(Measure, "of", lambda self, subject: counted.append(self.id) or real(self, subject))
     picture = finish(result)
-    assert picture.findings == tuple(each.sentence for each in findings_of(result))
+    assert picture.findings == expected
+    # What is measured for the record is known to the findings.
+    assert "discriminability" in counted
+    assert len(counted) == len(set(counted))
     assert picture.findings
     assert _kinds(("It jumps.", "Look at this: it repeats.")) == ["found", "hinted"]
     assert _kinds(("Look at this: it repeats.",)) == ["hinted"]

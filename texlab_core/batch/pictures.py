@@ -79,7 +79,7 @@ def finish(result: Result, *, bits: Bits = 8, measures: tuple[str, ...] | None =
         thumbnail=thumbnail(result.image),
         sha256=digest.hexdigest(),
         measures=taken,
-        findings=tuple(each.sentence for each in findings_of(result, _prepared())),
+        findings=tuple(each.sentence for each in findings_of(result, subject)),
         notes=result.notes,
     )
 

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from texlab_core.engine.params import Params
     from texlab_core.engine.result import Result
     from texlab_core.findings.finding import Finding
-    from texlab_core.measures.subject import PreparedCache
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,13 +112,19 @@ def diagnose(
     )
 
 
-def findings_of(
-    result: Result, cache: PreparedCache | None = None, should_stop: Callable[[], bool] | None = None
-) -> tuple[Finding, ...]:
-    """Return what is wrong with a result; nothing for a volume, of which no labels are known."""
+def findings_of(result: Result, subject: Subject | None = None) -> tuple[Finding, ...]:
+    """Return what is wrong with a result; nothing for a volume, of which no labels are known.
+
+    Parameters
+    ----------
+    result
+        What a job made.
+    subject
+        Made of the result, with what was measured of it already; None makes one.
+    """
     if result.volume is not None:
         return ()
-    return find_all(Subject.of_result(result, cache, should_stop), result.job.params)
+    return find_all(Subject.of_result(result) if subject is None else subject, result.job.params)
 
 
 def _recipe(picture: str | os.PathLike[str], *, needed: bool) -> Recipe | None:

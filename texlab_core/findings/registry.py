@@ -50,7 +50,7 @@ class Case:
 
     def value(self, measure: str) -> float | None:
         """Return a measure of the subject, computed once for all detectors."""
-        return self.subject.once(f"value of {measure}", lambda: find_measure(measure).of(self.subject))
+        return find_measure(measure).known_of(self.subject)
 
     def text(self, measure: str) -> str:
         """Return a measure as it is written everywhere; raises ``LookupError`` where there is none."""

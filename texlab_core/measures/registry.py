@@ -101,6 +101,10 @@ class Measure:
             return None
         return min(max(float(value), self.low), self.high)
 
+    def known_of(self, subject: Subject) -> float | None:
+        """Return the number like :meth:`of`, computed once for everybody who asks about this subject."""
+        return subject.once(f"value of {self.id}", lambda: self.of(subject))
+
     def text(self, value: float) -> str:
         """Return the number as it is written everywhere, with its unit."""
         written = format(value, self.form)
@@ -181,7 +185,7 @@ def measure_all(subject: Subject, ids: Iterable[str] | None = None) -> dict[str,
 
 def _tried(measure: Measure, subject: Subject) -> float | None:
     try:
-        return measure.of(subject)
+        return measure.known_of(subject)
     except Cancelled:
         raise
     except Exception:

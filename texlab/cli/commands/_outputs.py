@@ -95,11 +95,11 @@ def make(job: Job, outputs: Outputs, keep: Sequence[str] = (), *, measured: bool
 def _measured(result: Result) -> Made:
     from texlab_core.findings.diagnosis import findings_of
     from texlab_core.measures.registry import measure_all
-    from texlab_core.measures.subject import PreparedCache, Subject
+    from texlab_core.measures.subject import Subject
 
-    cache = PreparedCache()
-    measures = measure_all(Subject.of_result(result, cache, interrupted))
-    return Made(result, measures, [each.to_json() for each in findings_of(result, cache, interrupted)])
+    subject = Subject.of_result(result, should_stop=interrupted)
+    measures = measure_all(subject)
+    return Made(result, measures, [each.to_json() for each in findings_of(result, subject)])
 
 
 def _foretold(job: Job) -> str:
