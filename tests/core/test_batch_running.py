@@ -30,6 +30,7 @@ from texlab_core.documents.record import read_recipe
 from texlab_core.engine.inputs import ArraysInput, Crop, DataInput
 from texlab_core.engine.job import Job
 from texlab_core.errors import Cancelled, InputError
+from texlab_core.findings.revision import judged_by
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.volumes import read_volume
@@ -124,11 +125,18 @@ def test_what_is_done_is_found_and_what_is_half_is_made_again(tmp_path: Path) ->
     (out / "records" / f"{rows[2].job}.json").write_text("{", "utf-8")
     (out / "records" / f"{rows[3].job}.json").write_text("[]", "utf-8")
     (out / "records" / f"{rows[4].job}.json").write_bytes(before[f"records/{rows[5].job}.json"])
+    # Numbers of another program, and of one that did not say which it was: they are not mixed with those of now.
+    for row, judged in ((rows[6], {"judged_by": "0-0123456789ab"}), (rows[7], {})):
+        path = out / "records" / f"{row.job}.json"
+        old = json.loads(path.read_bytes())
+        assert old.pop("judged_by") == judged_by()
+        old["measures"]["discriminability"] = -9.0
+        path.write_text(json.dumps(old | judged), "utf-8")
     (out / "pictures" / ".texlab-0123456789abcdef.tmp").write_bytes(b"half")
     (out / ".texlab-parcels").mkdir()
     (out / ".texlab-parcels" / "some.npz").write_bytes(b"half")
     mended = run_batch(plan, out)
-    assert (mended.made, mended.found) == (5, 7)
+    assert (mended.made, mended.found) == (7, 5)
     assert files_of(out) == before
 
 

@@ -16,6 +16,7 @@ from hypothesis.extra import numpy as hnp
 from PIL import Image
 
 from tests.core.toy import NoiseParams, noise_method, stock
+from texlab_core.documents import embedding
 from texlab_core.documents.embedding import MAX_EMBEDDED, pack_pixels, unpack_pixels
 from texlab_core.documents.recipe import recipe_json
 from texlab_core.documents.record import read_recipe, save_result, summary
@@ -175,6 +176,33 @@ def test_the_cheapest_lossless_encoding_is_chosen():
     assert base64.b64decode(sixteen["base64"])[24] == 16
     # Negative zero is a bit pattern of its own, and the hash sees it.
     assert pack_pixels(np.full((2, 2, 1), -0.0, np.float32))["encoding"] == "float32"
+
+
+def test_a_source_of_several_exemplars_is_packed_once(monkeypatch):
+    packed = []
+    real = embedding.pack_pixels
+    monkeypatch.setattr(
+        embedding, "pack_pixels", lambda pixels, limit: packed.append(pixels) or real(pixels, limit)
+    )
+    whole = as_exemplar(levels(height=24, width=20))
+    crops = [as_exemplar(whole, crop=Crop(top, 0, 12, 12)) for top in (0, 5, 9)]
+    entries = [embedding.embed(each) for each in crops]
+    assert len(packed) == 1
+    for each, crop in zip(entries, crops, strict=True):
+        assert each["source"] == pack_pixels(whole.pixels)
+        assert each["sha256"] == crop.sha256
+    # What is done to one recipe does not show in the next.
+    entries[0]["source"].clear()
+    assert embedding.embed(crops[0])["source"] == entries[1]["source"]
+    # Another source, and another limit, are packed anew; what is too long stays so.
+    assert embedding.embed(crops[0], limit=10)["pixels"] == pack_pixels(crops[0].pixels)
+    assert "source" not in embedding.embed(crops[1], limit=10)
+    other = as_exemplar(levels(height=24, width=21))
+    assert embedding.embed(other)["source"] == pack_pixels(other.pixels) != entries[1]["source"]
+    changing = np.array(whole.pixels)
+    before = embedding._SOURCES.pack(changing, 10**6)
+    changing[0, 0] = 1 - changing[0, 0]
+    assert embedding._SOURCES.pack(changing, 10**6) == pack_pixels(changing) != before
 
 
 def test_data_and_arrays_are_embedded_too(tmp_path):

@@ -79,6 +79,16 @@ def start(stop: Event, begun: Event, folder: str) -> None:
 
         cv2.setNumThreads(1)
     _here.append(_Here(stop, Path(folder)))
+    # What every job needs is loaded while the first input is on its way.
+    import texlab_core.batch.pictures  # noqa: F401
+    from texlab_core.findings.registry import detectors
+    from texlab_core.measures.registry import measures
+
+    measures(), detectors()
+
+
+def be_ready() -> None:
+    """Be asked for, so that the process starts."""
 
 
 def _end_with(sentinel: int) -> None:

@@ -1,8 +1,9 @@
 """The folder of a batch: pictures, small pictures and records, each whole or not there; what is done is found.
 
-A job is done when its record is there, fits its hash, and the picture it names has the length that it says. The
-record is renamed into place after the pictures, so that a process that is killed leaves either all of them or a
-job that is not done.
+A job is done when its record is there, fits its hash, rests on the measures and findings of this program, and the
+picture it names has the length that it says. One whose numbers are an older program's is made again: they stand
+in its picture, too, and many of them come from what no picture holds. The record is renamed into place after the
+pictures, so that a process that is killed leaves either all of them or a job that is not done.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from texlab_core.files import strict_json
 from texlab_core.files.leftovers import is_leftover
 from texlab_core.files.regular import open_appending, reason
 from texlab_core.files.whole import write_pieces, write_together
+from texlab_core.findings.revision import judged_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -110,6 +112,12 @@ class BatchFolder:
         """A folder for what is needed while the batch runs."""
         return self.path / SCRATCH
 
+    @property
+    def has_records(self) -> bool:
+        """Whether an earlier run has finished any job."""
+        with os.scandir(self.path / RECORDS) as found:
+            return any(True for _ in found)
+
     def done(self, key: str) -> Record | None:
         """Return the record of a job that is done, or None."""
         path = self.path / RECORDS / f"{key}.json"
@@ -120,7 +128,8 @@ class BatchFolder:
             strict_json.check_document(data, "record of a batch", form=FORMAT, version=VERSION)
             picture = self.path / data["picture"]
             small = self.path / data["thumbnail"]
-            whole = data["job"] == key and picture.stat().st_size == data["bytes"] and small.is_file()
+            whole = data["job"] == key and data["judged_by"] == judged_by()
+            whole = whole and picture.stat().st_size == data["bytes"] and small.is_file()
         except (InputError, KeyError, TypeError, OSError, ValueError):
             return None
         return Record(key, data) if whole else None
@@ -160,6 +169,7 @@ class BatchFolder:
             "thumbnail": f"{THUMBNAILS}/{stem}.png",
             "bytes": len(picture.png),
             "pixels_sha256": picture.sha256,
+            "judged_by": judged_by(),
             "measures": dict(picture.measures),
             "findings": list(picture.findings),
             "notes": list(picture.notes),

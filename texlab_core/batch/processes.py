@@ -78,6 +78,12 @@ class Processes:
                 self._crew.end()
                 self._crew = None
 
+    def begin(self) -> None:
+        """Start the processes now, for a run that is about to come: they load while the first input is read."""
+        if self._crew is None:
+            self._crew = self._begin()
+            self._crew.begin()
+
     def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
         """Carry orders out; see :meth:`texlab_core.batch.places.Place.run`."""
         crew, whole = self._crew or self._begin(), False
@@ -111,6 +117,11 @@ class _Crew:
             # A bare system may lack what processes share.
             raise InputError(f"No processes can be started here ({error.strerror}); use only one.") from error
         self._pool: ProcessPoolExecutor | None = None
+
+    def begin(self) -> None:
+        """Start the processes, which load what jobs need."""
+        # A pool starts its processes with the first that is asked of it.
+        self._started().submit(child.be_ready)
 
     def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
         waiting: dict[Future[Outcome], Order] = {}
@@ -147,6 +158,9 @@ class _Crew:
                 self._drop.leave(order.parcels)
 
     def _submit(self, order: Order) -> Future[Outcome]:
+        return self._started().submit(child.carry_out, order)
+
+    def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             self._pool = ProcessPoolExecutor(
                 self._width,
@@ -154,7 +168,7 @@ class _Crew:
                 initializer=child.start,
                 initargs=(self._stop, self._begun, str(self._drop.folder)),
             )
-        return self._pool.submit(child.carry_out, order)
+        return self._pool
 
     def _lose(self, order: Order, lost: list[Order]) -> None:
         """Keep an order for another try; there is none where no process has ever begun."""

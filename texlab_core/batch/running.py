@@ -137,7 +137,10 @@ def run_batch(
     with BatchFolder(out) as folder:
         if isinstance(place, Processes) and place.scratch is None:
             place = Processes(place.width, folder.scratch)
-        return _Run(plan, folder, place, sample, on_progress).result(should_stop)
+        run = _Run(plan, folder, place, sample, on_progress)
+        if isinstance(place, Processes) and not folder.has_records:
+            place.begin()
+        return run.result(should_stop)
 
 
 class _Run:

@@ -6,7 +6,10 @@ import base64
 import binascii
 import json
 import math
+import threading
+import weakref
 import zlib
+from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,7 +88,7 @@ def _embed_image(given: ImageInput, limit: int, used: int) -> dict[str, Any]:
     # A picture that was used whole is the file that the user has.
     is_part = origin is not None and (origin.scale != 1 or origin.crop is not None or origin.taken is not None)
     is_part = is_part or "levels" in entry
-    if origin is not None and (packed := pack_pixels(origin.pixels, limit)) is not None:
+    if origin is not None and (packed := _SOURCES.pack(origin.pixels, limit)) is not None:
         entry["source"] = packed
         alpha = origin.alpha
     elif (packed := pack_pixels(given.pixels, used if is_part else limit)) is not None:
@@ -138,6 +141,38 @@ def pack_pixels(pixels: FloatImage, limit: int = MAX_EMBEDDED) -> dict[str, Any]
     if packed is None:
         return None
     return {"encoding": "float32", "shape": list(pixels.shape), "base64": _text(packed)}
+
+
+class _Sources:
+    """The sources that were packed last: the jobs of one exemplar, and of its crops, all carry the same."""
+
+    def __init__(self, capacity: int = 2) -> None:
+        self._capacity = capacity
+        self._lock = threading.Lock()
+        # A source is known as long as someone else holds it: scans are large.
+        self._packed: OrderedDict[tuple[int, int], tuple[weakref.ref[NDArray[Any]], dict[str, Any] | None]] = (
+            OrderedDict()
+        )
+
+    def pack(self, pixels: FloatImage, limit: int) -> dict[str, Any] | None:
+        """Return what :func:`pack_pixels` does."""
+        if pixels.flags.writeable:
+            # Nobody knows whether it is still what it was.
+            return pack_pixels(pixels, limit)
+        key = id(pixels), limit
+        with self._lock:
+            known = self._packed.get(key)
+        if known is None or known[0]() is not pixels:
+            known = weakref.ref(pixels), pack_pixels(pixels, limit)
+            with self._lock:
+                self._packed[key] = known
+                self._packed.move_to_end(key)
+                while len(self._packed) > self._capacity:
+                    self._packed.popitem(last=False)
+        return None if known[1] is None else dict(known[1])
+
+
+_SOURCES = _Sources()
 
 
 def unpack_pixels(packed: Mapping[str, Any], name: str) -> FloatImage:

@@ -128,7 +128,7 @@ def versions() -> Mapping[str, str]:
     """Return the versions that influence the bits of every method: the program's, Python's, and of libraries."""
     found = {"python": platform.python_version(), "texlab": __version__}
     for name in LIBRARIES:
-        found[name] = _version(name)
+        found[name] = version_of(name)
     return frozen_mapping(found)
 
 
@@ -136,10 +136,11 @@ def versions_for(method: Method) -> Mapping[str, str]:
     """Return the versions that influence a method's bits: those of :func:`versions`, and of its own package."""
     if method.package == OWN_PACKAGE:
         return versions()
-    return frozen_mapping({**versions(), method.package: _version(method.package)})
+    return frozen_mapping({**versions(), method.package: version_of(method.package)})
 
 
-def _version(name: str) -> str:
+def version_of(name: str) -> str:
+    """Return the version of an installed package, "unknown" where there is none."""
     try:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
