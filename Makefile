@@ -40,9 +40,9 @@ bar: .venv/.ready-run
 numbers: .venv/.ready-run
 	@$(PY) -m texlab_core.figures --numbers resources/help
 
-# Whether what the tuner finds has a larger V at no larger D than the defaults; takes most of an hour.
+# Whether what the tuner finds has a larger V at no larger D than the defaults, into the help; takes most of an hour.
 tuned: .venv/.ready-run
-	@$(PY) -m texlab_core.figures._tuned
+	@$(PY) -m texlab_core.figures._tuned --write resources/help/de-bonet.md
 
 # The report that the help opens: forty of De Bonet's 800 textures in one page.
 report: .venv/.ready-run

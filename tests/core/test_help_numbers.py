@@ -41,7 +41,7 @@ def test_every_place_is_in_its_page_once_and_belongs_to_the_command() -> None:
     for each in STATED:
         assert len(place(each.name).findall(page(each.page))) == 1
     for name in {each.page for each in STATED}:
-        marked = set(re.findall(r"<!-- end of (.*?) -->", page(name))) - {"defaults"}
+        marked = set(re.findall(r"<!-- end of (.*?) -->", page(name))) - {"defaults", "tuned"}
         assert marked == {each.name for each in STATED if each.page == name}
 
 
@@ -75,6 +75,20 @@ def test_spectral_distances() -> None:
         written = row(words, title)
         assert len(written) == len(_stated.MATCHED)
         assert _stated.spectral_distances(name, (1,)) == pytest.approx(written[:1], abs=0.3)
+
+
+def test_what_the_machine_observer_finds() -> None:
+    words = stated("popout", "observer")
+    numbers = [int(each) for each in re.findall(r"\bin (\d+)[,%.]", words.replace("\n", " "))]
+    assert f"Of {len(_stated.WATCHED)} tests" in words
+    *written, chance = numbers
+    found, guessed = _stated.found_originals(_stated.WATCHED[:1])
+    assert round(100 * guessed) == chance
+    # One test of each cannot be more than all of them.
+    assert all(one <= every <= len(_stated.WATCHED) for one, every in zip(found, written, strict=True))
+    # What stands out is found nearly always; what does not, not far more often than by guessing.
+    assert min(written[:3]) >= 0.9 * len(_stated.WATCHED)
+    assert written[3] < 0.6 * len(_stated.WATCHED)
 
 
 def test_searched() -> None:

@@ -15,10 +15,12 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QPushButton
 
 from tests.gui.conftest import ids, result_image, wait_idle
+from texlab.state.chosen import Sample
 from texlab.window.export_desk import column_items, foreseen
 from texlab.window.export_dialog import ExportDialog, ExportRequest
 from texlab_core.documents.record import read_recipe
 from texlab_core.errors import InputError
+from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 
 if TYPE_CHECKING:
@@ -127,6 +129,16 @@ def test_a_figure_of_all_columns(explorer: Any, opened: ExportDialog, qtbot: Any
     page = pypdf.PdfReader(tmp_path / "a.pdf").pages[0]
     assert float(page.mediabox.width) == pytest.approx(8.5 / 2.54 * 72, abs=1e-3)
     assert "iterations 1" in page.extract_text()
+
+
+def test_an_exemplar_that_comes_while_the_fields_are_shown_is_said(
+    explorer: Any, opened: ExportDialog, qtbot: Any
+) -> None:
+    assert opened.names.text().startswith("waves-")
+    other = as_exemplar(np.random.default_rng(5).random((40, 48, 1), np.float32), name="other")
+    explorer.session.set_sample(Sample(other))
+    qtbot.waitUntil(lambda: opened.names.text().startswith("other-"))
+    assert opened.run_button.isEnabled()
 
 
 def test_an_animation(explorer: Any, opened: ExportDialog, qtbot: Any, tmp_path: Path) -> None:

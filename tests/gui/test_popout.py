@@ -12,6 +12,7 @@ from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication, QFileDialog
 
+from texlab.state.chosen import Sample
 from texlab.widgets.hidden_picture import HiddenPicture
 from texlab.window.popout_dialog import PAUSE_MS, PopoutDialog
 from texlab.window.popout_review import cells_of, line_of
@@ -331,6 +332,16 @@ def test_a_test_of_columns_is_made_given_scored_and_kept(
     qtbot.waitUntil(lambda: dialog.setup.foreseen.text().startswith("Written"))
     with out.open(newline="") as stream:
         assert [row["test"] for row in csv.DictReader(stream)] == [path.stem] * 2
+
+
+def test_an_exemplar_that_comes_while_the_fields_are_shown_is_said(explorer: Any, qtbot: Any) -> None:
+    explorer.window.actions_by_name["popout"].trigger()
+    setup = explorer.handlers.popouts.dialog.setup
+    assert "with a piece of 24 x 20" in setup.foreseen.text()
+    other = as_exemplar(np.random.default_rng(5).random((40, 60, 1), np.float32), name="other")
+    explorer.session.set_sample(Sample(other))
+    qtbot.waitUntil(lambda: "with a piece of 30 x 20" in setup.foreseen.text())
+    assert setup.start_button.isEnabled()
 
 
 def test_making_can_be_stopped_and_methods_that_fail_are_said(

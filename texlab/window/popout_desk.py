@@ -45,6 +45,7 @@ class PopoutDesk:
         self.dialog: PopoutDialog | None = None
         self.record: Record | None = None
         self._name = ""
+        controller.exemplar_ready.connect(self._look_again)
         self._maker = Worker("popout", parent=window)
         self._maker.finished.connect(self._give)
         # One thread writes every answer in turn; a newer record holds all that an older one does.
@@ -126,6 +127,11 @@ class PopoutDesk:
             f" {design.chance:.0%}: that is guessing.",
             sound=True,
         )
+
+    def _look_again(self, _: object) -> None:
+        """Say what a test of the exemplar that has come would be, where its fields are shown."""
+        if self.dialog is not None and self.dialog.isVisible() and self.dialog.resting:
+            self.dialog.setup.edit()
 
     def _make(self, asked: PopoutRequest) -> None:
         dialog = self.dialog

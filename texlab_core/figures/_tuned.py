@@ -1,4 +1,4 @@
-"""What the tuner gains: ``python -m texlab_core.figures._tuned [--budget RUNS] [--only NAME ...]``.
+"""What the tuner gains: ``python -m texlab_core.figures._tuned [--budget RUNS] [--only NAME ... | --write PAGE]``.
 
 Over the homogeneous textures of the gallery, the central 128 x 128 pixels to 256 x 256, it lets the tuner look for
 De Bonet parameters with a larger V at no larger D than the defaults have, measures both again with seeds that
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.errors import InputError
+from texlab_core.figures._stated import state
 from texlab_core.figures.defaults import OUTPUT, centre, homogeneous
 from texlab_core.measures.registry import measure_all
 from texlab_core.measures.subject import PreparedCache, Subject
@@ -95,23 +97,32 @@ def gain(name: str, budget: int = DEFAULT_BUDGET, judges: Sequence[int] = JUDGES
     return Gain(name, kept, gained, *own, changes=found.changes)
 
 
+def words(found: Sequence[Gain]) -> str:
+    """Return on how many of the textures the promise holds, as the help says it."""
+    held = sum(each.holds for each in found)
+    return f"V is larger at no larger D on {held} of {len(found)} textures ({held / len(found):.0%})."
+
+
 def main() -> int:
     """Tune, print, and compare with the bar; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m texlab_core.figures._tuned", allow_abbrev=False)
     parser.add_argument("--budget", type=int, default=DEFAULT_BUDGET, help="runs for each texture")
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="these textures instead of all homogeneous ones")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--only", nargs="+", metavar="NAME", help="these textures instead of all homogeneous ones")
+    which.add_argument("--write", type=Path, metavar="HELP_PAGE", help="put what holds into the help page")
     args = parser.parse_args()
     found = []
     try:
         for name in args.only or homogeneous():
             found.append(gain(name, args.budget))
             print(found[-1].line(), flush=True)
-    except InputError as error:
+        if args.write is not None:
+            state(args.write, "tuned", lambda: words(found))
+    except (InputError, OSError) as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)
         return 2
-    held = sum(each.holds for each in found)
-    print(f"V is larger at no larger D on {held} of {len(found)} textures ({held / len(found):.0%}).")
-    return 0 if held >= BAR * len(found) else 1
+    print(words(found))
+    return 0 if sum(each.holds for each in found) >= BAR * len(found) else 1
 
 
 if __name__ == "__main__":
