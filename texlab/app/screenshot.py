@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from texlab.app.explorer import Explorer
 
+LAYOUTS_INSIDE_EACH_OTHER = 8
 SCREENSHOT_LIMIT_MS = 120_000
 
 
@@ -90,5 +91,9 @@ def wait_until_idle(explorer: Explorer, limit_ms: int = SCREENSHOT_LIMIT_MS) -> 
     loop.exec()
     watch.stop()
     limit.stop()
-    QCoreApplication.processEvents()
+    if explorer.window.parameters.form is not None:
+        explorer.window.parameters.form.complete()
+    # A layout asks the one around it, which asks the next: each in a round of its own.
+    for _ in range(LAYOUTS_INSIDE_EACH_OTHER):
+        QCoreApplication.processEvents()
     return done
