@@ -10,7 +10,7 @@ import pytest
 from mouse import on_screen
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QApplication, QFileDialog
+from PySide6.QtWidgets import QApplication, QFileDialog, QPushButton
 
 from texlab.state.chosen import Sample
 from texlab.widgets.hidden_picture import HiddenPicture
@@ -277,6 +277,29 @@ def test_what_is_closed_is_stopped(qtbot: Any, dialog: Any) -> None:
     painted(qtbot, dialog.stage)
     with qtbot.waitSignal(dialog.over):
         dialog.close()
+    assert not dialog.isVisible()
+
+
+@pytest.mark.parametrize("page", ["fields", "making", "ready", "trial", "outcome"])
+def test_it_closes_from_every_page(qtbot: Any, dialog: Any, page: str) -> None:
+    made = made_of()
+
+    def turn() -> None:
+        dialog.show()
+        dialog.show_test(made)
+        dialog.pages.setCurrentWidget(getattr(dialog, page))
+
+    turn()
+    dialog.close()
+    assert not dialog.isVisible()
+    closing = {"fields": "popout-close", "outcome": "popout-result-close"}.get(page)
+    if closing is not None:
+        turn()
+        qtbot.mouseClick(dialog.findChild(QPushButton, closing), Qt.MouseButton.LeftButton)
+        assert not dialog.isVisible()
+        turn()
+        qtbot.keyClick(dialog, Qt.Key.Key_Escape)
+        assert not dialog.isVisible()
 
 
 # In the running program.

@@ -24,7 +24,7 @@ from texlab.window.popout_setup import WIDEST, PopoutSetup, action_button
 from texlab_core.popout.scoring import Answer
 
 if TYPE_CHECKING:
-    from PySide6.QtGui import QCloseEvent, QKeyEvent
+    from PySide6.QtGui import QKeyEvent
 
     from texlab.style.theme import Theme
     from texlab_core.popout.making import Made
@@ -251,11 +251,7 @@ class PopoutDialog(QDialog):
             super().keyPressEvent(event)
 
     def reject(self) -> None:
-        """Close; what runs is stopped first."""
-        self.close()
-
-    def closeEvent(self, event: QCloseEvent) -> None:
-        """Stop the making, and leave a test that is given."""
+        """Close, however it is asked for: stop the making, and leave a test that is given."""
         page = self.pages.currentWidget()
         if page is self.making:
             self.stopped.emit()
@@ -263,7 +259,7 @@ class PopoutDialog(QDialog):
             self._leave()
         elif page is self.ready:
             self.show_setup()
-        super().closeEvent(event)
+        super().reject()
 
 
 def _centred(inside: QWidget) -> QWidget:

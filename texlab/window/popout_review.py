@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from texlab_core.popout.scoring import Answer, Score
 
 HEADS = ("Method", "Found", "Share", "95 % interval", "Guessing", "Time", "Machine", "So")
-NOTE = "Time is the median of the hits. The machine clicks where the local D is largest, without the exemplar."
+NOTE = (
+    "Time is the median of the hits. The machine clicks where the local D is largest, without the exemplar. In a"
+    " picture + is your click, × the machine's."
+)
 
 
 def cells_of(found: Score) -> tuple[str, ...]:
