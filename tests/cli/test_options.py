@@ -15,6 +15,7 @@ from texlab.cli.commands._options import (
     output_folder,
     parse_crop,
     parse_number,
+    parse_result_size,
     parse_settings,
     parse_size,
     refuse_overwriting,
@@ -25,7 +26,7 @@ from texlab_core.errors import InputError, ParamError
 if TYPE_CHECKING:
     from pathlib import Path
 
-sides = st.integers(1, 99999)
+sides = st.integers(1, 8192)
 
 
 @given(sides, sides, st.integers(0, 9999), st.integers(0, 9999))
@@ -37,11 +38,21 @@ def test_width_comes_first_on_the_command_line_and_height_in_the_core(
 
 
 @pytest.mark.parametrize(
-    "text", ["", "256", "256x", "x256", "0x5", "5x00", "-1x5", "1.5x2", "9x9x9", "1e3x5", "٣x٣"]
+    "text", ["", "0", "256x", "x256", "0x10", "5x00", "-1x5", "-5", "1.5x2", "9x9x9", "1e3x5", "٣x٣"]
 )
 def test_sizes_that_are_none(text: str) -> None:
-    with pytest.raises(ParamError, match="size: must be width and height as in 256x192"):
+    # What was given is shown as it was given.
+    with pytest.raises(ParamError, match=f"size: must be width and height as in 256x192, or one.*, got '{text}'"):
         parse_size(text)
+
+
+def test_one_number_is_a_square_everywhere() -> None:
+    assert parse_size("32") == parse_size(" 032 ") == (32, 32)
+    assert parse_size("64 x 48") == parse_size("64X48") == parse_size("64×48") == (48, 64)
+    with pytest.raises(ParamError, match="size: must be at most 64 megapixels, got '99999'"):
+        parse_size("99999")
+    with pytest.raises(ParamError, match="size: must be at most 64 million voxels, got '512x512x512'"):
+        parse_result_size("512x512x512", 3)
 
 
 @pytest.mark.parametrize("text", ["256x256", "256x256+1", "256x256-1+2", "0x5+1+1", "a", "256x256+1+2+3"])

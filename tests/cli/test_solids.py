@@ -25,8 +25,9 @@ def test_sizes_have_as_many_numbers_as_the_method() -> None:
     assert parse_result_size("12x10x8", 3) == (8, 10, 12)
     assert parse_result_size("12X10×8", 3) == (8, 10, 12)
     assert parse_result_size("12x10", 2) == (10, 12)
+    assert parse_result_size("12", 3) == (12, 12, 12)
     for text in ("12x10", "12x10x0", "12x10x8x4", "axbxc", "", "12x10x-8"):
-        with pytest.raises(ParamError, match="width, height and depth as in 128x128x128"):
+        with pytest.raises(ParamError, match=f"width, height and depth as in 128x128x64.*got '{text}'"):
             parse_result_size(text, 3)
 
 

@@ -107,13 +107,30 @@ def test_a_grid_of_crops_goes_from_edge_to_edge(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "size"),
-    [("40x30", (30, 40)), ("2x", (20, 26)), ("1x", (10, 13)), ("0.5x", (5, 6)), ("1.5x", (15, 20))],
+    [
+        ("40x30", (30, 40)),
+        ("40X30", (30, 40)),
+        ("24", (24, 24)),
+        ("2x", (20, 26)),
+        ("1x", (10, 13)),
+        ("0.5x", (5, 6)),
+        ("1.5x", (15, 20)),
+    ],
 )
 def test_sizes(text: str, size: tuple[int, int]) -> None:
     assert SizeRule(text).of((10, 13)) == size
 
 
-@pytest.mark.parametrize(("text", "size"), [("6x5x4", (4, 5, 6)), ("1x", (10, 10, 10)), ("0.5x", (5, 5, 5))])
+def test_one_number_is_a_square(folder: Path) -> None:
+    crops = [{"from": "in/photo-0.png", "crops": {"size": "8", "grid": "2"}}]
+    plan = plan_from_json(WHOLE | {"inputs": crops, "sizes": [24, "32"]}, folder=folder)
+    assert [each.of((10, 13)) for each in plan.sizes] == [(24, 24), (32, 32)]
+    assert [each.load().size for each in plan.exemplars] == [(8, 8)] * 4
+
+
+@pytest.mark.parametrize(
+    ("text", "size"), [("6x5x4", (4, 5, 6)), ("7", (7, 7, 7)), ("1x", (10, 10, 10)), ("0.5x", (5, 5, 5))]
+)
 def test_sizes_of_solids(text: str, size: tuple[int, ...]) -> None:
     assert SizeRule(text).of((10, 13), 3) == size
 
@@ -161,7 +178,7 @@ def test_presets_and_settings(folder: Path) -> None:
         ({"inputs": [{"from": "in", "scale": True}]}, "scales: must be above 0"),
         ({"inputs": [{"from": "in", "crops": []}]}, "crops: at least one"),
         ({"inputs": [{"from": "in", "crops": ["8x8"]}]}, "crops: must be width, height, left and top"),
-        ({"inputs": [{"from": "in", "crops": {"size": "8"}}]}, "crops: size must be two numbers"),
+        ({"inputs": [{"from": "in", "crops": {"size": "8x"}}]}, "crops: size must be two numbers"),
         ({"inputs": [{"from": "in", "crops": {"size": "8x8", "grid": "0x1"}}]}, "crops: grid must be two numbers"),
         ({"inputs": [{"from": "in", "crops": {"size": "8x8", "grid": "999x999"}}]}, "crops: at most"),
         ({"methods": ["de-bonnet"]}, "did you mean de-bonet"),
@@ -179,8 +196,9 @@ def test_presets_and_settings(folder: Path) -> None:
         ({"seeds": {"from": 2147483647, "count": 2}}, "seed: must be a whole number"),
         ({"sizes": ["big"]}, "sizes: must be width and height"),
         ({"sizes": ["0x"]}, "sizes: must be width and height"),
-        ({"sizes": ["0x8"]}, "size: must be height and width"),
-        ({"sizes": [8]}, "sizes: must be a text"),
+        ({"sizes": ["0x8"]}, "for all sides, got '0x8'."),
+        ({"sizes": [True]}, "sizes: must be a text"),
+        ({"sizes": [-8]}, "sizes: must be width and height"),
         ({"measures": "w1-pixels"}, "measures: must be quick, all, or a list of ids"),
         ({"measures": ["w1-pixel"]}, "did you mean w1-pixels"),
         ({"bits": 12}, "bits: must be 8 or 16"),

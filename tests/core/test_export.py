@@ -57,9 +57,11 @@ def test_seeds_and_sizes_are_read():
     for wrong in ("", "a", "4..1", "4-1", "1..", "1-", "-1", "0..1000", "2147483648", "1,,2"):
         with pytest.raises(ParamError, match="seeds: must be whole numbers"):
             parse_seeds(wrong)
-    for wrong in ("", "-64", "64x", "0x4", "64x48x8", ",".join(f"{side}x9" for side in range(1, 70))):
-        with pytest.raises(ParamError, match="sizes: must be sizes WxH"):
+    for wrong in ("", "-64", "64x", "0x4", "64x48x8"):
+        with pytest.raises(ParamError, match=f"sizes: must be width and height as in 256x192.*got '{wrong}'"):
             parse_sizes(wrong)
+    with pytest.raises(ParamError, match="sizes: must be at most 64 sizes"):
+        parse_sizes(",".join(f"{side}x9" for side in range(1, 70)))
 
 
 def test_a_pattern_names_the_files():

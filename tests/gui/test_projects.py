@@ -20,6 +20,7 @@ from texlab.state.changes import sample_of
 from texlab.state.chosen import Column, Sample, State
 from texlab.state.scene import Past
 from texlab.state.session import Session
+from texlab.storage import projects
 from texlab.storage.paths import config_dir
 from texlab.storage.projects import is_handed_on, open_project, project_of, write_for_window
 from texlab_core.documents.preset_store import PresetStore
@@ -226,13 +227,26 @@ def test_nothing_stays_of_what_one_window_leaves_for_another(
     assert not list(folder.iterdir())
     path = handed_on()
     Path(path).write_bytes(b"PK")
-    with pytest.raises(InputError):
+    # What it was called is said, not where it lay.
+    with pytest.raises(InputError, match=r"^wall: is damaged") as caught:
         open_project(path)
+    assert str(folder) not in str(caught.value)
     assert not list(folder.iterdir())
     monkeypatch.setattr("texlab_core.documents.project.MAX_INPUT", 10)
     with pytest.raises(InputError):
         handed_on()
     assert not list(folder.iterdir())
+
+
+def test_a_cell_that_cannot_be_left_for_another_window_is_called_by_its_name(
+    handed_on: Callable[[], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(path: Path, project: object) -> None:
+        raise InputError(f"{path}: cannot be written (No space left on device).")
+
+    monkeypatch.setattr(projects, "save_project", full)
+    with pytest.raises(InputError, match=r"^wall: cannot be written \(No space left on device\)\.$"):
+        handed_on()
 
 
 def test_nothing_stays_when_the_other_window_does_not_start(

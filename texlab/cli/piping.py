@@ -58,7 +58,9 @@ def standard_streams(args: argparse.Namespace, command: object) -> Iterator[None
     import tempfile
     from pathlib import Path
 
-    with tempfile.TemporaryDirectory(prefix="texlab-") as folder:
+    with tempfile.TemporaryDirectory(prefix="texlab-") as made:
+        # As sentences call it: a folder for temporary files may be reached by a link.
+        folder = os.path.realpath(made)
         if reading:
             setattr(args, reading[0], str(_take_in(Path(folder))))
         if roles:

@@ -19,6 +19,7 @@ from texlab_core.documents.project_history import ProjectPast
 from texlab_core.documents.project_reading import read_project
 from texlab_core.engine.job import job_key
 from texlab_core.engine.registry import find_method
+from texlab_core.errors import InputError
 from texlab_core.sheets.export_names import safe_part
 
 if TYPE_CHECKING:
@@ -233,6 +234,8 @@ def open_project(path: str, first: Callable[[OpenedProject], None] | None = None
     """
     try:
         project = read_project(path, None if first is None else lambda part: first(_opened(path, part, ())))
+    except InputError as error:
+        raise InputError(str(error).replace(path, _called(path))) from error
     finally:
         if is_handed_on(path):
             take_away(path)
@@ -245,8 +248,10 @@ def write_for_window(state: State) -> str:
     path = Path(tempfile.mkdtemp(prefix=HANDED_ON)) / f"{safe_part(name)}{SUFFIX}"
     try:
         save_project(path, project_of(state, 1, {}, ""))
-    except BaseException:
+    except BaseException as error:
         take_away(str(path))
+        if isinstance(error, InputError):
+            raise InputError(str(error).replace(str(path), _called(str(path)))) from error
         raise
     return str(path)
 
@@ -255,6 +260,11 @@ def is_handed_on(path: str) -> bool:
     """Return whether a project file was written by :func:`write_for_window`."""
     folder = Path(path).parent
     return folder.name.startswith(HANDED_ON) and folder.parent == Path(tempfile.gettempdir())
+
+
+def _called(path: str) -> str:
+    """Return what to call a project file: the folder of one that was handed on tells nobody anything."""
+    return Path(path).stem if is_handed_on(path) else path
 
 
 def take_away(path: str) -> None:
@@ -287,8 +297,7 @@ def _opened(path: str, project: Project, kept: Sequence[str]) -> OpenedProject:
     state = State(sample, tuple(columns), project.seed, size, len(columns) + 1, project.notes)
     names = ", ".join(dict.fromkeys(find_method(each.method).title for each in project.columns))
     count = "1 column" if len(columns) == 1 else f"{len(columns)} columns"
-    # What one window left for another is gone by now: its folder tells nobody anything.
-    said = [f"Opened {Path(path).stem if is_handed_on(path) else path}: {count} ({names})."]
+    said = [f"Opened {_called(path)}: {count} ({names})."]
     if unknown := project.unknown_pasts:
         many = "1 earlier result is" if unknown == 1 else f"{unknown} earlier results are"
         said.append(f"{many} left out, whose methods or parameters are not known here.")

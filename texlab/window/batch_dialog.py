@@ -100,7 +100,7 @@ class BatchDialog(RunDialog):
                 "Sizes",
                 self.sizes,
                 "sizes",
-                "WxH, or a factor of the exemplar's sides as in 2x; several with commas",
+                "WxH, one number for a square, or a factor of the exemplar's sides as in 2x; several with commas",
                 None,
             ),
             (

@@ -215,7 +215,7 @@ def _crops(given: object) -> list[Crop | Grid | None]:
 
 def crop_of(text: object) -> Crop:
     """Return the rectangle from ``WxH+X+Y``; raises ``InputError``."""
-    pattern = r"([0-9]{1,9})[x×]([0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})"
+    pattern = r"([0-9]{1,9})[xX×]([0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})"
     found = re.fullmatch(pattern, text) if isinstance(text, str) else None
     if found is None:
         raise InputError(
@@ -227,7 +227,10 @@ def crop_of(text: object) -> Crop:
 
 
 def _pair(text: object, key: str) -> tuple[int, int]:
-    found = re.fullmatch(r"([1-9][0-9]{0,5})[x×]([1-9][0-9]{0,5})", text) if isinstance(text, str) else None
+    pattern = r"([1-9][0-9]{0,5})(?:[xX×]([1-9][0-9]{0,5}))?"
+    found = re.fullmatch(pattern, text) if isinstance(text, str) else None
     if found is None:
-        raise InputError(f"crops: {key} must be two numbers as in 128x128, got {strict_json.shorten(text)}.")
-    return int(found[1]), int(found[2])
+        raise InputError(
+            f"crops: {key} must be two numbers as in 128x96, or one for both, got {strict_json.shorten(text)}."
+        )
+    return int(found[1]), int(found[2] or found[1])

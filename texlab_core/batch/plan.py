@@ -13,7 +13,7 @@ from texlab_core.batch.further import Further, further_of
 from texlab_core.documents.preset_store import PresetStore, find_preset
 from texlab_core.engine.job import check_seed
 from texlab_core.engine.registry import find_method
-from texlab_core.engine.sizes import check_size, default_size
+from texlab_core.engine.sizes import check_size, default_size, size_from_text
 from texlab_core.errors import InputError
 from texlab_core.files import strict_json
 from texlab_core.files.regular import read_regular, reason
@@ -56,7 +56,7 @@ class SizeRule:
     Parameters
     ----------
     text
-        ``WxH``, ``WxHxD`` for solids, or a factor as in ``2x``.
+        ``WxH``, ``WxHxD`` for solids, one number for all sides, or a factor as in ``2x``.
     """
 
     text: str
@@ -66,18 +66,17 @@ class SizeRule:
 
     def of(self, exemplar: tuple[int, int], dimensions: int = 2) -> tuple[int, ...]:
         """Return the size of a result of so many dimensions for an exemplar of this height and width."""
-        if fixed := re.fullmatch(r"([0-9]{1,9})[x×]([0-9]{1,9})(?:[x×]([0-9]{1,9}))?", self.text):
-            width, height, depth = (None if side is None else int(side) for side in fixed.groups())
-            size = (height, width) if depth is None else (depth, height, width)
-            return check_size(size, len(size))
+        if re.fullmatch(r"[0-9]{1,9}(?:[xX×][0-9]{1,9}){0,2}", self.text):
+            sides = len(re.split("[xX×]", self.text))
+            return size_from_text(self.text, dimensions if sides == 1 else sides, "sizes")
         if factor := re.fullmatch(r"([0-9]{1,4}(?:\.[0-9]{1,6})?)x", self.text):
             times = float(factor[1])
             if times > 0:
-                sides = default_size(exemplar, dimensions)
-                return check_size(tuple(max(1, round(side * times)) for side in sides), dimensions)
+                own = default_size(exemplar, dimensions)
+                return check_size(tuple(max(1, round(side * times)) for side in own), dimensions)
         raise PlanError(
-            "sizes: must be width and height as in 256x192 (and depth for a solid), or a factor of the exemplar's "
-            "sides as in 2x, "
+            "sizes: must be width and height as in 256x192 (and depth for a solid), one number for all sides, or "
+            "a factor of the exemplar's sides as in 2x, "
             f"got {strict_json.shorten(self.text)}."
         )
 
@@ -253,7 +252,7 @@ def _plan(data: object, folder: Path, presets: PresetStore | None) -> Plan:
         exemplars=choices_of(_list(data, "inputs"), folder),
         variants=_named_apart(variants),
         seeds=_seeds(data.get("seeds", [0])),
-        sizes=tuple(SizeRule(_text(each, "sizes")) for each in _distinct(_list(data, "sizes", ["1x"]))),
+        sizes=tuple(SizeRule(_size_text(each)) for each in _distinct(_list(data, "sizes", ["1x"]))),
         name=_text(data.get("name", "batch"), "name"),
         note=_text(data.get("note", ""), "note"),
         bits=_BITS[bits],
@@ -280,6 +279,12 @@ def _list(data: dict[str, Any], key: str, default: Sequence[object] = ()) -> lis
     if key in data and not found:
         raise PlanError(f"{key}: at least one is needed.")
     return list(found)
+
+
+def _size_text(given: object) -> str:
+    """Return a size as text; one number is one for all sides."""
+    number = isinstance(given, int) and not isinstance(given, bool)
+    return str(given) if number else _text(given, "sizes")
 
 
 def _text(given: object, key: str) -> str:

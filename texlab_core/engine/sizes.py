@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -44,6 +45,30 @@ def check_size(size: object, dimensions: int = 2) -> tuple[int, ...]:
     if math.prod(map(int, size)) > MAX_PIXELS:
         raise ParamError("size", allowed, size)
     return tuple(map(int, size))
+
+
+def size_from_text(text: str, dimensions: int = 2, name: str = "size") -> tuple[int, ...]:
+    """Return (height, width) of ``256x192``, or (depth, height, width) of ``128x128x64``: text has width first.
+
+    One number stands for all sides.
+
+    Raises
+    ------
+    ParamError
+        When it is no size of so many sides, each of at least 1, or has more than 64 megapixels.
+    """
+    sides = re.split(r"\s*[xX\u00d7]\s*", text.strip())
+    sides = sides * dimensions if len(sides) == 1 else sides
+    if len(sides) != dimensions or not all(re.fullmatch("0{0,8}[1-9][0-9]{0,8}", side) for side in sides):
+        wanted = (
+            "width and height as in 256x192" if dimensions == 2 else "width, height and depth as in 128x128x64"
+        )
+        raise ParamError(name, f"{wanted}, or one number of at least 1 for all sides", text)
+    size = tuple(int(side) for side in reversed(sides))
+    if math.prod(size) > MAX_PIXELS:
+        unit = "megapixels" if dimensions == 2 else "million voxels"
+        raise ParamError(name, f"at most 64 {unit}", text)
+    return size
 
 
 def default_size(exemplar: tuple[int, int], dimensions: int) -> tuple[int, ...]:

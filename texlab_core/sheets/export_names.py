@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texlab_core.engine.job import MAX_SEED
-from texlab_core.engine.sizes import size_text
+from texlab_core.engine.sizes import size_from_text, size_text
 from texlab_core.errors import InputError, ParamError
 from texlab_core.files.wording import printable
 
@@ -167,15 +167,7 @@ def parse_sizes(text: str, dimensions: int = 2) -> tuple[tuple[int, ...], ...]:
     ParamError
         When a part is no size of so many sides. Whether a method can make it is asked by the job.
     """
-    form = "WxH" if dimensions == 2 else "WxHxD"
-    allowed = f"sizes {form}, or one number for all sides, separated by commas, at most {_MOST_SIZES}"
-    found: dict[tuple[int, ...], None] = {}
-    for part in text.split(","):
-        sides = re.split(r"\s*[xX×]\s*", part.strip())
-        sides = sides * dimensions if len(sides) == 1 else sides
-        if len(sides) != dimensions or not all(re.fullmatch(r"[1-9][0-9]{0,8}", side) for side in sides):
-            raise ParamError("sizes", allowed, text)
-        found[tuple(int(side) for side in reversed(sides))] = None
+    found = dict.fromkeys(size_from_text(part, dimensions, "sizes") for part in text.split(","))
     if len(found) > _MOST_SIZES:
-        raise ParamError("sizes", allowed, text)
+        raise ParamError("sizes", f"at most {_MOST_SIZES} sizes, separated by commas", text)
     return tuple(found)

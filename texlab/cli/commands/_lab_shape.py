@@ -36,7 +36,9 @@ def _shape_options(parser: Parser) -> None:
     add_image(parser, words="the view of a plane; noise, discs: an isotropic texture of the program's own")
     parser.add_argument("--slant", metavar="DEG", help="view the image as a texture so slanted, 0 to 80")
     parser.add_argument("--tilt", default="0", metavar="DEG", help="direction of that slant (default 0)")
-    parser.add_argument("--size", default="256x256", metavar="WxH", help="of a view that is rendered")
+    parser.add_argument(
+        "--size", default="256x256", metavar="WxH", help="of a view that is rendered; one number for a square"
+    )
     parser.add_argument("--seed", default="0", metavar="N", help="of the program's own textures")
     add_out(parser)
 

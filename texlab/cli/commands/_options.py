@@ -24,35 +24,30 @@ if TYPE_CHECKING:
 NumberT = TypeVar("NumberT", int, float)
 
 
-def parse_size(text: str, name: str = "size") -> tuple[int, int]:
-    """Return (height, width) from ``WxH``; raises ``ParamError``."""
-    found = re.fullmatch(r"([0-9]{1,9})[xX×]([0-9]{1,9})", text.strip())
-    if found is None or "0" in (found[1].lstrip("0") or "0", found[2].lstrip("0") or "0"):
-        raise ParamError(name, "width and height as in 256x192", text)
-    return int(found[2]), int(found[1])
+def parse_size(text: str) -> tuple[int, int]:
+    """Return (height, width) from ``WxH``, or one number for both; raises ``ParamError``."""
+    from texlab_core.engine.sizes import size_from_text
+
+    height, width = size_from_text(text)
+    return height, width
 
 
 def parse_result_size(text: str, dimensions: int) -> tuple[int, ...]:
-    """Return (height, width) from ``WxH``, or (depth, height, width) from ``WxHxD``; raises ``ParamError``."""
-    if dimensions == 2:
-        return parse_size(text)
-    sides = re.split("[xX×]", text.strip())
-    usable = len(sides) == dimensions and all(re.fullmatch("[0-9]{1,9}", side) and int(side) for side in sides)
-    if not usable:
-        raise ParamError("size", "width, height and depth as in 128x128x128", text)
-    width, height, depth = map(int, sides)
-    return depth, height, width
+    """Return the same, or (depth, height, width) from ``WxHxD``; raises ``ParamError``."""
+    from texlab_core.engine.sizes import size_from_text
+
+    return size_from_text(text, dimensions)
 
 
 def parse_crop(text: str, name: str = "crop") -> Crop:
     """Return the rectangle from ``WxH+X+Y``; raises ``ParamError``."""
-    found = re.fullmatch(r"([0-9]{1,9}[xX×][0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())
-    if found is None:
+    found = re.fullmatch(r"([0-9]{1,9})[xX×]([0-9]{1,9})\+([0-9]{1,9})\+([0-9]{1,9})", text.strip())
+    width, height, left, top = (0, 0, 0, 0) if found is None else map(int, found.groups())
+    if not width or not height:
         raise ParamError(name, "width, height, left and top as in 256x192+10+20", text)
     from texlab_core.engine.inputs import Crop
 
-    height, width = parse_size(found[1], name)
-    return Crop(top=int(found[3]), left=int(found[2]), height=height, width=width)
+    return Crop(top=top, left=left, height=height, width=width)
 
 
 def parse_settings(texts: Sequence[str]) -> dict[str, str]:

@@ -27,7 +27,7 @@ inputs   a file, a folder, a glob, gallery:NAME, gallery:* or a class as in gall
          {"from": "in/*.jpg", "scale": 0.5, "crops": {"size": "128x128", "grid": "4x2"}}
 methods  ids, or {"method": "de-bonet", "set": {"alpha": 0.2}}; presets: names as in de-bonet/paper, or files
          with further inputs: {"method": "mixture", "inputs": {"second": "wall.jpg"}}
-sizes    WxH, or a factor of the exemplar's sides as in 2x
+sizes    WxH, one number for a square, or a factor of the exemplar's sides as in 2x
 
 the folder holds pictures with their recipes, report.csv and index.html; run again, the batch goes on
 """

@@ -57,7 +57,9 @@ def configure(parser: Parser) -> None:
         "--out", required=True, metavar=SHEET, help="file to write; .pdf and .svg are figures for print"
     )
     parser.add_argument("--same-phase", action="store_true", help="one seed, and so one random phase, for all")
-    parser.add_argument("--size", metavar="WxH", help="size of each result (default: the exemplar's)")
+    parser.add_argument(
+        "--size", metavar="WxH", help="size of each result; one number for a square (default: the exemplar's)"
+    )
     parser.add_argument("--seed", default="0", metavar="N", help="of the first method; the others count on")
     parser.add_argument("--columns", metavar="N", help="pictures in a row (default: one row up to six)")
     parser.add_argument(

@@ -61,7 +61,9 @@ def configure(parser: Parser) -> None:
     )
     parser.add_argument("--out", required=True, metavar="DIR|FILE", help="folder to write to, or one file")
     parser.add_argument("--seeds", metavar="N..M,K", help="seeds to make (default: each result's own)")
-    parser.add_argument("--sizes", metavar="WxH,WxH", help="sizes to make (default: each result's own)")
+    parser.add_argument(
+        "--sizes", metavar="WxH,WxH", help="sizes to make; one number for all sides (default: each result's own)"
+    )
     parser.add_argument("--format", metavar="ENDING", help="png, tif, exr, webp, jpg, avif or jxl (default png)")
     parser.add_argument("--bits", choices=BITS, help="for each sample (default: as the exemplar has)")
     parser.add_argument("--quality", metavar="N", help="1 to 100, of a format that may lose something")

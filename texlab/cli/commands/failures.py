@@ -27,7 +27,9 @@ def configure(parser: Parser) -> None:
         "name", nargs="?", metavar="NAME", help="the failure to make, with --out; without it, a list"
     )
     parser.add_argument("--out", metavar="FILE", help="file to write: .png, .tif, .webp or .jpg, with its recipe")
-    parser.add_argument("--size", metavar="WxH", help="of the result (default: the example's)")
+    parser.add_argument(
+        "--size", metavar="WxH", help="of the result; one number for a square (default: the example's)"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
 
 

@@ -59,7 +59,9 @@ def configure(parser: Parser) -> None:
     parser.add_argument(
         "--feather", metavar="PX", help="soften the edge of the mask outward: 1 - d/(PX + 1) at d pixels from it"
     )
-    parser.add_argument("--size", metavar="WxH", help="grow the image outward to this size")
+    parser.add_argument(
+        "--size", metavar="WxH", help="grow the image outward to this size; one number for a square"
+    )
     parser.add_argument(
         "--margins", metavar="N|L,T,R,B", help="grow the image outward by pixels left, top, right and bottom"
     )

@@ -19,7 +19,10 @@ ORDER = 0
 def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
-        "image", nargs="?", metavar="IMAGE", help="image file, saved result, MSG code or gallery:NAME to open"
+        "image",
+        nargs="?",
+        metavar="IMAGE",
+        help="image file, saved result, project, preset, MSG code or gallery:NAME to open",
     )
 
 

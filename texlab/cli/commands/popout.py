@@ -66,7 +66,11 @@ def configure(parser: Parser) -> None:
     make.add_argument(
         "--set", action="append", default=[], metavar="METHOD.NAME=VALUE", help="set one parameter of one method"
     )
-    make.add_argument("--size", metavar="WxH", help="of the pictures (default: three times the piece, from 256)")
+    make.add_argument(
+        "--size",
+        metavar="WxH",
+        help="of the pictures; one number for a square (default: three times the piece, from 256)",
+    )
     make.add_argument(
         "--share", default="0.5", metavar="S", help="sides of the piece over the exemplar's (default 0.5)"
     )

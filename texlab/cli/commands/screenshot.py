@@ -24,7 +24,12 @@ MOST_COLUMNS = 12
 def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("--out", required=True, metavar="WINDOW.png", help="PNG file to write")
-    parser.add_argument("--size", default="1280x800", metavar="WxH", help="size of the window (default 1280x800)")
+    parser.add_argument(
+        "--size",
+        default="1280x800",
+        metavar="WxH",
+        help="of the window; one number for a square (default 1280x800)",
+    )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark", help="default dark")
     parser.add_argument("--gallery", metavar="NAME", help="texture of the gallery to show")
     parser.add_argument("--columns", metavar="A,B,C", help="the methods of the columns (default: the first four)")

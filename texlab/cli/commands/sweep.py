@@ -71,7 +71,9 @@ def configure(parser: Parser) -> None:
     # As it was called in the first versions.
     parser.add_argument("--recipe", dest="sweep", metavar="NAME|FILE", help=argparse.SUPPRESS)
     parser.add_argument("--preset", metavar="NAME|FILE", help="start from the parameters of a preset")
-    parser.add_argument("--size", metavar="WxH|WxHxD", help="of each result (default: the exemplar's)")
+    parser.add_argument(
+        "--size", metavar="WxH|WxHxD", help="of each result; one number for all sides (default: the exemplar's)"
+    )
     parser.add_argument("--seed", metavar="N", help="the same seed gives the same bits (default 0)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set one parameter")
     add_scale_options(parser)

@@ -47,7 +47,9 @@ def configure(parser: Parser) -> None:
     parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar, or a code X.msg.json")
     parser.add_argument("--method", required=True, metavar="ID", help="one of texlab methods")
     add_output_options(parser)
-    parser.add_argument("--size", metavar="WxH|WxHxD", help="of the result (default: the exemplar's)")
+    parser.add_argument(
+        "--size", metavar="WxH|WxHxD", help="of the result; one number for all sides (default: the exemplar's)"
+    )
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same bits (default 0)")
     add_parameter_options(parser)
     add_scale_options(parser, keeps=True)

@@ -63,7 +63,9 @@ def configure(parser: Parser) -> None:
         help="largest D (default -3.1); start: that of the first run; own: that of another piece of the image",
     )
     parser.add_argument("--budget", default="1500", metavar="N", help="most runs, 24 to 5000 (default 1500)")
-    parser.add_argument("--size", metavar="WxH|WxHxD", help="of the results (default: the exemplar's)")
+    parser.add_argument(
+        "--size", metavar="WxH|WxHxD", help="of the results; one number for all sides (default: the exemplar's)"
+    )
     parser.add_argument("--seed", default="0", metavar="N", help="the same seed gives the same preset (default 0)")
     add_parameter_options(parser, "begin with these parameters")
     add_scale_options(parser)
