@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QApplication
 
 from texlab.app.malloc import keep_little
 from texlab.storage.settings import Settings
+from texlab.style.letters import ensure_letters
 from texlab.style.theme import ThemeName, ThemeSource, apply_theme
 from texlab.window.main_window import MainWindow
 
@@ -40,6 +41,7 @@ def application() -> QApplication:
     made.setApplicationDisplayName("")
     made.setDesktopFileName("texlab")
     made.setWindowIcon(icon())
+    ensure_letters()
     # Work in other threads gives the window its turn sooner.
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     return made
