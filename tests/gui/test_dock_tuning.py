@@ -111,6 +111,7 @@ def test_trials_are_a_faint_cloud_behind_runs_that_can_be_read(qtbot):
         Qt.PenStyle.SolidLine,
     )
     assert all(item.fill.color().alpha() > 128 for item, *_ in texts)
+    assert all(trials.item.zValue() < item.zValue() < run.item.zValue() for item, *_ in texts)
 
 
 def test_points_need_both_measures():

@@ -179,6 +179,8 @@ class Plot(QWidget):
     def points(self, x: ArrayLike, y: ArrayLike, role: Role, size: float = 8, *, faint: bool = False) -> Any:
         """Add points of ``size`` pixels; faint ones are a cloud behind others, without outlines."""
         item = pg.ScatterPlotItem(x=np.asarray(x, np.float64), y=np.asarray(y, np.float64), size=size)
+        # Words lie over a cloud, and beside other points: what is behind words hides none of these.
+        item.setZValue(-1 if faint else 1)
         self._series.append(_Series(item, role, "solid", 0 if faint else 1, filled=True))
         self.view.addItem(item)
         if self._theme is not None:
