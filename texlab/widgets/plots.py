@@ -289,7 +289,7 @@ class Plot(QWidget):
         series.item.setPen(pen if series.width else None)
         if series.filled:
             wash = QColor(colour)
-            wash.setAlpha(60)
+            wash.setAlpha(60 if series.width else 110)
             series.item.setBrush(pg.mkBrush(wash))
 
     def _paint_text(self, item: Any, role: Role, theme: Theme) -> None:
