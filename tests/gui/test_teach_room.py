@@ -14,6 +14,8 @@ from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
 
 from tests.gui.conftest import ids, wait_idle
 from tests.gui.test_lessons import SMALL, give, wait_ready
+from texlab.columns.column import ColumnView
+from texlab.columns.exemplar import ExemplarView
 from texlab.columns.foot import Foot
 from texlab.docks.lab.dock import LabDock
 from texlab.docks.lab.page import best_columns
@@ -29,8 +31,11 @@ from texlab.widgets.headed import headed
 from texlab.widgets.heat_map import HeatMap
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label
+from texlab.widgets.plots import Plot
 from texlab.widgets.scroll_room import ScrollRoom
+from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine
+from texlab.widgets.view_link import ViewLink
 from texlab.window.teach_mode import readable
 
 if TYPE_CHECKING:
@@ -191,6 +196,7 @@ def test_in_teach_a_step_has_the_room_that_it_needs(qtbot: Any, explorer: Explor
     qtbot.waitUntil(lambda: window.docks["lab"].height() > 0.7 * window.height())
     assert not workspace.isVisible()
     assert lab.dock.page.slant.value() == 20
+    check_teach_again_gives_a_tab_without_pictures_its_room(qtbot, explorer)
     assert cut(window, painted(window)) == []
     # A step without a tab has its words in front, also when nothing else is left of that tab.
     for text in ("The third step.", "The fourth step."):
@@ -227,3 +233,83 @@ def test_as_many_columns_as_have_room_stand_side_by_side(
     count: int, chosen: int, most: int, shown: list[int]
 ) -> None:
     assert readable(range(count), chosen, most) == shown
+
+
+def test_frames_arrows_and_lines_are_as_large_as_the_text(qtbot: Any, qapp: Any) -> None:
+    exemplar, box, plot = ExemplarView(ViewLink()), ShortBox(), Plot("plot", "Plot")
+    for each in (exemplar, box, plot):
+        qtbot.addWidget(each)
+    box.addItem("Heeger-Bergen")
+    box.resize(400, 120)
+    plot.set_theme(LIGHT)
+    plot.curve([0.0, 1.0], [0.0, 1.0], "result")
+
+    def sizes() -> tuple[float, ...]:
+        (curve,) = plot._series
+        frame = exemplar._box
+        drawn = box.grab().toImage()
+        # What is dark beyond the text.
+        dark = [
+            x
+            for x in range(box.text_room, 398)
+            if any(drawn.pixelColor(x, y).lightness() < 90 for y in range(8, 112))
+        ]
+        handles = {
+            (handle.radius, handle.pen.widthF(), round(handle.shape().boundingRect().width()))
+            for handle in frame.getHandles()
+        }
+        (handle,) = handles
+        return frame.pen.widthF(), *handle, curve.item.opts["pen"].widthF(), float(len(dark))
+
+    before = qapp.font().pointSizeF()
+    usual = sizes()
+    try:
+        set_least(60.0)
+        set_text_size(qapp, 60.0, LIGHT)
+        QApplication.processEvents()
+        large = sizes()
+    finally:
+        set_least(0.0)
+        set_text_size(qapp, before, LIGHT)
+    assert all(after > 2.5 * first > 0 for first, after in zip(usual, large, strict=True)), (usual, large)
+    assert sizes() == usual
+
+
+def test_what_stands_over_a_column_makes_room_for_its_title(qtbot: Any, taught: None) -> None:
+    room = QWidget()
+    qtbot.addWidget(room)
+    view = ColumnView(1, [("heeger-bergen", "Heeger-Bergen")], ViewLink(), room)
+    view.show_title("Heeger-Bergen")
+    room.show()
+    for width, whole in ((700, True), (330, False)):
+        view.resize(width, 400)
+        QApplication.processEvents()
+        assert view.run_button.isVisible() == view.grip.isVisible() == whole
+        assert view.menu_button.isVisible()
+        assert view.method_box.shown_text == "Heeger-Bergen"
+    view.show_title("Heeger-Bergen, iterations 5")
+    view.resize(400, 400)
+    QApplication.processEvents()
+    assert not view.run_button.isVisible()
+    assert view.method_box.shown_text == "Heeger-Bergen …"
+    assert "iterations 5" in view.method_box.toolTip()
+
+
+def test_a_first_figure_without_room_shows_its_value(qtbot: Any, taught: None) -> None:
+    room = QWidget()
+    qtbot.addWidget(room)
+    foot = Foot("line", room)
+    foot.show_scene(column_of(noise(8, 8), status="finished", measures={"laid-down-share": 0.12}))
+    room.show()
+    for width, text in ((600, "laid down 12%"), (150, "12%"), (600, "laid down 12%")):
+        foot.resize(width, foot.height())
+        QApplication.processEvents()
+        assert foot.figures[0].text() == text
+        assert foot.figures[0].toolTip().startswith("laid down 12%")
+
+
+def check_teach_again_gives_a_tab_without_pictures_its_room(qtbot: Any, explorer: Explorer) -> None:
+    window = explorer.window
+    window.actions_by_name["layout-teach"].trigger()
+    qtbot.waitUntil(lambda: window.docks["lab"].height() > 0.7 * window.height())
+    assert not explorer.workspace.isVisible()

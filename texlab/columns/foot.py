@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
 from texlab.columns.arrangement import Frame
 from texlab.columns.status import MOST_NUMBERS, Figure, details, figures, numbers_of, shows_numbers, status_parts
+from texlab.style.text_size import text_scale
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.status_line import StatusLine
 
@@ -50,7 +51,6 @@ class Foot(QWidget):
         self.line.setObjectName(name)
         self.figures = tuple(Label() for _ in range(MOST_NUMBERS))
         self.row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self.row.setSpacing(GAP)
         for each in self.figures:
             each.setProperty("role", "figure")
             each.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
@@ -86,7 +86,6 @@ class Foot(QWidget):
         ways = QBoxLayout.Direction
         self.row.setDirection(ways.TopToBottom if words == "beside" else ways.LeftToRight)
         self.box.setDirection(ways.LeftToRight if words == "line" else ways.TopToBottom)
-        self.box.setSpacing(GAP if words == "line" else 0)
         # Beside a high picture the line stands under the figures, and what is left is below both.
         self.box.setStretch(2, 1 if words == "beside" else 0)
         self.box.setStretch(1, 0 if words == "beside" else 1)
@@ -107,6 +106,11 @@ class Foot(QWidget):
             return LINES_BESIDE
         return 2 if self._words == "below" and not self._has_figures else 1
 
+    @property
+    def _gap(self) -> int:
+        """Pixels between what stands side by side."""
+        return round(GAP * text_scale(self))
+
     def width_of(self, text: str) -> int:
         """Return the pixels of a text among the figures."""
         self.figures[0].ensurePolished()
@@ -124,12 +128,14 @@ class Foot(QWidget):
             return Frame(self.width_of(WIDEST) + 2 * MARGIN, 0)
         figure, line = self.heights
         if words == "line":
-            least = 2 * self.width_of("D -0.00 ▲") + self.width_of(WIDEST) + self.width_of(LINE) + 4 * GAP
+            least = 2 * self.width_of("D -0.00 ▲") + self.width_of(WIDEST) + self.width_of(LINE) + 4 * self._gap
             return Frame(0, max(self.heights), least)
         return Frame(0, figure + line)
 
     def _take_room(self) -> None:
         """Be as high as all feet, or as wide: pictures side by side stay at the same level."""
+        self.row.setSpacing(self._gap)
+        self.box.setSpacing(self._gap if self._words == "line" else 0)
         self.setMinimumSize(0, 0)
         self.setMaximumSize(UNLIMITED, UNLIMITED)
         frame = self.frame(self._words)
@@ -153,7 +159,7 @@ class Foot(QWidget):
                 # The first one is always there: its value, where the title has no room.
                 first = not place and self.width_of(whole) > room and self.isVisible()
                 label.setText(self._shown[place].short if first else whole)
-                room -= self.width_of(self._shown[place].text) + (GAP if place else 0)
+                room -= self.width_of(self._shown[place].text) + (self._gap if place else 0)
             label.setVisible(has and (room >= 0 or place == 0))
 
     def _fit_beside(self) -> None:
@@ -164,7 +170,7 @@ class Foot(QWidget):
         for place, label in enumerate(self.figures):
             needed = 0
             if place < len(self._shown):
-                needed = max(label.heightForWidth(width), label.sizeHint().height()) + (GAP if place else 0)
+                needed = max(label.heightForWidth(width), label.sizeHint().height()) + (self._gap if place else 0)
             room -= needed
             label.setVisible(needed > 0 and room >= 0)
         lines = int((room - 2) // self.line.fontMetrics().lineSpacing())

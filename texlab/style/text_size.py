@@ -103,6 +103,12 @@ def text_scale(widget: QWidget) -> float:
     return max(1.0, float(QFontMetricsF(widget.font()).height()) / USUAL_LINE)
 
 
+def line_scale(widget: QWidget) -> float:
+    """Return how many times as thick as usual lines are drawn beside a widget's text, at least 1."""
+    # At the smallest screen for teaching, usual lines can still be seen from afar.
+    return max(1.0, text_scale(widget) / 2)
+
+
 class _Follower(QObject):
     def __init__(self, widget: QWidget, changed: Callable[[], object]) -> None:
         super().__init__(widget)

@@ -163,6 +163,7 @@ def stylesheet(theme: Theme, points: float) -> str:
     return f"""
     QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border}; padding: 4px; }}
     QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 3px; padding: 4px 6px; }}
+    QMenuBar {{ spacing: {0.5 * points:.0f}px; }}
     QStatusBar {{ border-top: 1px solid {theme.border}; }}
     QStatusBar::item {{ border: none; }}
     QMainWindow > QTabBar::tab {{ padding: 4px 8px; border: none; border-top: 2px solid transparent; }}

@@ -9,10 +9,13 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QPainter, QPolygonF
 
+from texlab.style.text_size import line_scale
 from texlab.widgets.pane import Link, Pane
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from PySide6.QtWidgets import QWidget
 
     from texlab.style.pictures import Picture
 
@@ -193,21 +196,22 @@ class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has 
         more = 0.1 * max(self._bounds.width(), self._bounds.height()) + 1e-3
         return self._bounds.adjusted(-more, -more, more, more)
 
-    def paint(self, painter: QPainter, *_: object) -> None:
+    def paint(self, painter: QPainter, _: object, view: QWidget | None = None) -> None:
         """Paint a dark line under a bright one: seen on any picture."""
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        thickness = 1.0 if view is None else line_scale(view)
         scale = abs(painter.worldTransform().m11()) or 1.0
         for mark in self.shown:
             thin = isinstance(mark, Ring) and mark.tint == "centre"
             for colour, width in (("#000000", 2.2 if thin else 3.5), (TINTS[mark.tint], 1.0 if thin else 1.6)):
-                pen = pg.mkPen(colour, width=width)
+                pen = pg.mkPen(colour, width=width * thickness)
                 pen.setCosmetic(True)
                 if not isinstance(mark, Spot) and mark.dashed:
                     # Dashes are counted in widths of the line.
                     pen.setDashPattern([4 / width, 3 / width])
                 painter.setPen(pen)
                 painter.setBrush(Qt.BrushStyle.NoBrush)
-                _draw(painter, mark, 1 / scale)
+                _draw(painter, mark, thickness / scale)
 
 
 def _draw(painter: QPainter, mark: Drawn, pixel: float) -> None:

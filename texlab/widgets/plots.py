@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from texlab.style.numbers import even_ticks, log_ticks
-from texlab.style.text_size import text_scale
+from texlab.style.text_size import line_scale, text_scale
 from texlab.style.theme import configure_pyqtgraph
 from texlab.widgets.label_places import Label, place_labels
 from texlab.widgets.plain import escaped, set_tip
@@ -285,7 +285,7 @@ class Plot(QWidget):
 
     def _paint(self, series: _Series, theme: Theme) -> None:
         colour = QColor(getattr(theme, series.role))
-        pen = pg.mkPen(colour, width=series.width, style=LINES[series.line])
+        pen = pg.mkPen(colour, width=series.width * line_scale(self), style=LINES[series.line])
         series.item.setPen(pen if series.width else None)
         if series.filled:
             wash = QColor(colour)

@@ -110,7 +110,7 @@ class StatusLine(Label):
         lines: list[str] = []
         for part in parts:
             longer = f"{lines[-1]}{SEPARATOR}{part}" if lines else part
-            if lines and self.fontMetrics().horizontalAdvance(longer) <= self.width():
+            if lines and self.fontMetrics().horizontalAdvance(longer) < self.width() - 1:
                 lines[-1] = longer
             else:
                 lines.append(part)

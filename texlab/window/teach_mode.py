@@ -127,7 +127,11 @@ class TeachMode(QObject):
         self._was_on = self.on
         if entered and self._lesson.step is not None:
             self._window.show_dock(tab_of(self._lesson.step))
+        if self.on and self._lesson.step is not None:
             self._make_room(self._lesson.step)
+        elif self.on and window.actions_by_name["tab-alone"].isChecked():
+            # The layout that was asked for again has pictures.
+            window.actions_by_name["tab-alone"].setChecked(False)
         self._show_columns()
 
     # Lessons.

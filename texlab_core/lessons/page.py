@@ -37,6 +37,7 @@ figure { margin: 0; max-width: 100%; }
 figure img { display: block; max-width: 100%; }
 figure.texture img { width: 18rem; image-rendering: pixelated; }
 figcaption { font-size: .85rem; color: GrayText; max-width: 18rem; }
+.drawing figcaption { max-width: 48rem; }
 .note, .try { max-width: 48rem; white-space: pre-line; }
 .try::before { content: "Try: "; font-weight: 600; }
 .meta { color: GrayText; font-size: .85rem; }

@@ -43,7 +43,7 @@ def execute(args: argparse.Namespace) -> int:
 
         page = export(lesson, folder, reduced=args.reduced, on_step=_tell, should_stop=interrupted)
         answer |= {"page": str(page), "checked": True}
-        lines.append(str(page))
+        lines += ["every step can be run", str(page)] if args.check else [str(page)]
     elif args.check:
         answer |= {"checked": True, "results": _check(lesson, reduced=args.reduced)}
         lines.append("every step can be run")

@@ -41,7 +41,8 @@ def execute(args: argparse.Namespace) -> int:
         print(json.dumps(found, indent=2))
         return 0
     width = max(map(len, lessons), default=0)
+    wide = max((len(each.chapter) for each in lessons.values()), default=0)
     for name, each in lessons.items():
         about = "; ".join(PAPERS[paper] for paper in each.papers)
-        print(f"{name:{width}}  {each.chapter or '-':8}  {each.title}, {len(each.steps)} steps ({about})")
+        print(f"{name:{width}}  {each.chapter or '-':{wide}}  {each.title}, {len(each.steps)} steps ({about})")
     return 0
