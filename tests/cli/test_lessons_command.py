@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from texlab.cli.main import main
+from texlab_core.lessons.shelf import find
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,6 +43,8 @@ def test_lessons_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     assert "heeger-bergen" in text
     assert "Heeger and Bergen 1995" in text
+    # Titles stand under each other.
+    assert len({line.index(find(line.split()[0]).title) for line in text.splitlines()}) == 1
     assert main(["lessons", "--json"]) == 0
     found = {each["name"]: each for each in json.loads(capsys.readouterr().out)}
     assert len(found["heeger-bergen"]["steps"]) == 13
@@ -69,6 +72,10 @@ def test_a_lesson_is_shown_checked_and_exported(
     page = json.loads(capsys.readouterr().out)["page"]
     assert page == str(tmp_path / "out" / "index.html")
     assert (tmp_path / "out" / "step-01-0.png").is_file()
+    assert main(["lesson", str(file), "--check", "--reduced", "--export", str(tmp_path / "other")]) == 0
+    said = capsys.readouterr().out
+    assert "every step can be run" in said
+    assert "index.html" in said
 
 
 def test_what_cannot_be_used_is_said_in_one_sentence(file: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -108,8 +108,8 @@ class Foot(QWidget):
 
     @property
     def _gap(self) -> int:
-        """Pixels between what stands side by side."""
-        return round(GAP * text_scale(self))
+        """Pixels between figures; lines are apart already."""
+        return GAP if self._words == "beside" else round(GAP * text_scale(self))
 
     def width_of(self, text: str) -> int:
         """Return the pixels of a text among the figures."""
