@@ -6,9 +6,9 @@ Where no other program runs, the clock says it too, here for all of De Bonet's t
     python -m tests.benchmarks.bench_batch 800
 
 One process is what ``--processes 1`` gives: one thread works (98% of its CPU time is the main thread's; these
-textures are too small for transforms in two threads), as in each of two. The clock runs from the command to its end:
-start of Python, loading of compiled code, and the report are in it, and count more the fewer the jobs. What other
-programs took beside is printed too: from a tenth of a core on, the ratio says nothing.
+textures are too small for transforms in two threads), as in each of two. The clock runs from the command to its
+end: start of Python, loading of compiled code, and the report are in it, and count more the fewer the jobs. What
+other programs took beside is printed too: from a tenth of a core on, the ratio says nothing.
 """
 
 from __future__ import annotations

@@ -151,7 +151,7 @@ def test_gif_takes_the_first_frame_and_says_so():
     frames = []
     for seed in range(3):
         index = np.random.default_rng(seed).integers(0, 16, (15, 22), dtype=np.uint8)
-        image = Image.fromarray(index, "P")
+        image = Image.frombytes("P", (22, 15), index.tobytes())
         image.putpalette(palette.tobytes())
         frames.append(image)
     first = palette[np.asarray(frames[0])]

@@ -82,7 +82,7 @@ def test_the_other_choices_are_taken_from_the_exemplars_menu(
 ) -> None:
     path = tmp_path / "glass.png"
     pixels = np.random.default_rng(2).integers(0, 256, (40, 512, 4), np.uint8)
-    Image.fromarray(pixels, "RGBA").save(path)
+    Image.fromarray(pixels).save(path)
     explorer = open_window(str(path), [("tiling", hb_params("tiling"))])
     exemplar = explorer.workspace.exemplar
     assert exemplar.scale_box.text() == "50 %"
