@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PY := $(BIN)/python
 
-.PHONY: run test lint fmt bench soak bar numbers tuned report kill calibrate wheel sdist docs lock bits icons program screenshot screens clean distclean
+.PHONY: run test lint fmt bench soak large bar numbers tuned report kill calibrate wheel sdist docs lock bits icons program screenshot screens clean distclean
 .DEFAULT_GOAL := run
 
 run: .venv/.ready-run
@@ -31,6 +31,10 @@ bench: .venv/.ready-bench
 # Ten thousand random events in the window: what grows, what is left, what goes wrong; EVENTS=, SEED=.
 soak: .venv/.ready-test
 	@$(PY) -m tests.soak --events $(or $(EVENTS),10000) --seed $(or $(SEED),1)
+
+# Whether the window falls back to its memory once a result of 4096 x 4096 was closed; SIZE=.
+large: .venv/.ready-test
+	@$(PY) -m tests.soak.large --size $(or $(SIZE),4096)
 
 # De Bonet's defaults against what they have to reach; writes the table of the help page.
 bar: .venv/.ready-run

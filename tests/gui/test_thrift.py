@@ -58,12 +58,23 @@ def test_it_is_done_at_rest_and_only_when_there_is_more_than_before(
         assert given == [used[0]]
         qtbot.waitUntil(lambda: not thrift._worker.busy)
         used[0] += STEP_BYTES - 1
-        look(True, True)
+        look(False, True, True)
         assert not thrift._worker.busy
         used[0] += 1
         with qtbot.waitSignal(thrift.changed):
             look(True)
         assert len(given) == 2
+        qtbot.waitUntil(lambda: not thrift._worker.busy)
+        # Once for every rest, also where less is used than after the one before: it was freed, not given back.
+        look(True, True)
+        assert not thrift._worker.busy
+        used[0] -= 1
+        look(False, True)
+        assert not thrift._worker.busy
+        used[0] += 1
+        with qtbot.waitSignal(thrift.changed):
+            look(True)
+        assert len(given) == 3
     finally:
         thrift.close()
 

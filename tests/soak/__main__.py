@@ -1,4 +1,9 @@
-"""``python -m tests.soak``: random real events in the window; says what grew, and fails when something did."""
+"""``python -m tests.soak``: random real events in the window; says what grew, and fails when something did.
+
+Readings are compared in the same state: no window, what the program keeps to be quick the next time let go of,
+garbage collected, freed memory given back. Otherwise a reading would tell which picture was on the stage, and not
+what is left behind. Code stays for good once it is loaded: all of it is loaded before the first reading.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +29,7 @@ from PySide6.QtWidgets import QApplication
 
 from tests.soak import census
 from tests.soak.hands import Hands
+from tests.soak.large import look
 from texlab.app.memory import give_back
 from texlab.app.start import application, await_threads, build, complete
 from texlab.storage.settings import Settings
@@ -87,8 +93,9 @@ class Soak:
         sys.excepthook = lambda *error: self.note(traceback.format_exception(*error))
         threading.excepthook = lambda args: self.note(traceback.format_exception(args.exc_value))
         application()
-        # Compiled code stays for good, and would be taken for growth.
+        # Code stays for good, and would be taken for growth.
         warm_up()
+        census.import_everything()
         threads = threading.active_count()
         if self.options.trace:
             tracemalloc.start(12)
@@ -123,6 +130,8 @@ class Soak:
         window.show()
         explorer = complete(window, settings, themes)
         explorer.start(None if self.done else FIRST)
+        if not self.done:
+            look(explorer)
         loop = QEventLoop()
         driver = Driver(self, explorer, events, loop)
         driver.start()
@@ -164,6 +173,8 @@ class Soak:
 
     def _count(self, explorer: Explorer | None) -> None:
         """Count with a window at rest, and without any: what windows show differs, what is left must not."""
+        if explorer is None:
+            census.let_go()
         # At rest the program does this by itself.
         give_back()
         found = census.take(self.done, explorer)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import gc
+import importlib
+import pkgutil
 import sys
 import threading
 from collections import Counter
@@ -12,9 +14,14 @@ from typing import TYPE_CHECKING
 
 import shiboken6
 from PySide6.QtCore import QObject, QTimer
+from PySide6.QtGui import QPixmapCache
 from PySide6.QtWidgets import QApplication, QGraphicsView, QWidget
 
+import texlab
+import texlab_core
 from texlab.app.memory import memory_bytes
+from texlab.docks.recent import Recent
+from texlab_core.transforms.filters import shrink
 
 if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
@@ -84,6 +91,24 @@ def take(events: int, explorer: Explorer | None) -> Census:
         kept,
         Counter(type(each).__name__ for each in gc.get_objects()),
     )
+
+
+def import_everything() -> None:
+    """Load all modules of the program, so that what is loaded when it is first wanted is no growth."""
+    for package in (texlab, texlab_core):
+        for each in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not each.name.startswith(("texlab.__main__", "texlab._pyinstaller", "texlab_core.figures")):
+                importlib.import_module(each.name)
+
+
+def let_go() -> None:
+    """Empty what is kept in the modules for the next time: pictures of Qt's style, filters, answers of tabs."""
+    QPixmapCache.clear()
+    shrink(0)
+    for each in gc.get_objects():
+        if isinstance(each, Recent):
+            each.clear()
+    gc.collect()
 
 
 class _Mallinfo2(ctypes.Structure):

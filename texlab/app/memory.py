@@ -39,7 +39,10 @@ def give_back() -> None:
 
 
 class Thrift(QObject):
-    """Gives memory back, in its own thread, once the program has rested for a while with more than before.
+    """Gives memory back, in its own thread, once the program rests with more than it had at its least.
+
+    Once for every rest: what is freed next is freed by work. Less than at the rest before may still be too much:
+    what a large picture leaves free stays with malloc until it is asked.
 
     ``changed()`` when it was given.
     """
@@ -49,15 +52,20 @@ class Thrift(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._rested = False
-        self._least = 0
+        self._gave_at_rest = False
+        self._least: int | None = None
         self._worker = Worker("memory", parent=self)
         self._worker.finished.connect(lambda _: self._gave())
 
     def look(self, used: int | None, *, idle: bool) -> None:
         """See what is used now, in bytes; the program was at rest when that was said twice."""
         rested, self._rested = self._rested and idle, idle
-        grown = used is not None and used >= self._least + STEP_BYTES
-        if rested and grown and not self._worker.busy:
+        if not idle:
+            self._gave_at_rest = False
+        if not rested or self._gave_at_rest or used is None or self._worker.busy:
+            return
+        if self._least is None or used >= self._least + STEP_BYTES:
+            self._gave_at_rest = True
             self._worker.submit(lambda task: give_back())
 
     def leave(self) -> None:
@@ -69,5 +77,6 @@ class Thrift(QObject):
         self._worker.close()
 
     def _gave(self) -> None:
-        self._least = memory_bytes() or 0
+        now = memory_bytes() or 0
+        self._least = now if self._least is None else min(self._least, now)
         self.changed.emit()

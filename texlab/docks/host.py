@@ -267,8 +267,26 @@ class DockHost(QObject):
 
 def is_seen(part: QWidget) -> bool:
     """Return whether any of a widget can be seen; what its own parts cover is seen through them."""
+    return part.isVisible() and not _lies_outside(part) and _shows(part)
+
+
+def _lies_outside(part: QWidget) -> bool:
+    """Return whether a widget, or what it lies in, is beside its parent: so Qt puts the tabs behind the front one.
+
+    There are hundreds of parts in them, and every change of the scene asks.
+    """
+    here: QWidget | None = part
+    while here is not None and not here.isWindow():
+        above = here.parentWidget()
+        if above is not None and not above.rect().intersects(here.geometry()):
+            return True
+        here = above
+    return False
+
+
+def _shows(part: QWidget) -> bool:
     if not part.isVisible():
         return False
     if not part.visibleRegion().isEmpty():
         return True
-    return any(isinstance(each, QWidget) and is_seen(each) for each in part.children())
+    return any(isinstance(each, QWidget) and _shows(each) for each in part.children())

@@ -100,7 +100,7 @@ class ImagePane(Pane):
         self._look: NDArray[np.uint8] | None = None
         super().__init__(link, parent)
         self._marks: MarksItem | None = None
-        self.view.sigResized.connect(lambda _: self._link.resized() if self._link is not None else None)
+        self.view.sigResized.connect(lambda _: self._link.resized(self) if self._link is not None else None)
 
     @property
     def picture(self) -> Picture | None:

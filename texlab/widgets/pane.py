@@ -41,12 +41,16 @@ class Link(Generic[PaneT]):
         if pane in self._panes:
             self._panes.remove(pane)
 
+    def _those(self, only: PaneT | None) -> list[PaneT]:
+        """Return the panes that are meant: one, unless it has not joined yet, or all."""
+        return [each for each in self._panes if only is None or each is only]
+
     def moved(self, source: PaneT) -> None:
         """Show in all panes what the user made one show."""
         raise NotImplementedError
 
-    def resized(self) -> None:
-        """Show the same again after a pane came or changed."""
+    def resized(self, only: PaneT | None = None) -> None:
+        """Show the same again after a pane came or changed: in one, where no other depends on it, or in all."""
         raise NotImplementedError
 
     def fit(self) -> None:
@@ -138,7 +142,7 @@ class Pane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
         """Fit again when the user has not zoomed."""
         super().resizeEvent(event)
         if self._link is not None:
-            self._link.resized()
+            self._link.resized(self)
 
     def mouseMoveEvent(self, event: Any) -> None:
         """Tell where the pointer is."""

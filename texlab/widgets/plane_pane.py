@@ -86,19 +86,22 @@ class PlaneLink(Link["PlanePane"]):
             if pane is not source:
                 pane.show_rect(rectangle)
 
-    def resized(self) -> None:
-        """Fit again unless the user has zoomed."""
+    def resized(self, only: PlanePane | None = None) -> None:
+        """Fit again unless the user has zoomed: one pane, or all."""
         if self._fitted:
-            self.fit()
+            self._fit(only)
 
     def fit(self) -> None:
         """Show everything."""
         self._fitted = True
+        self._fit()
+
+    def _fit(self, only: PlanePane | None = None) -> None:
         whole = QRectF()
         for pane in self._panes:
             whole = whole.united(pane.area)
         if not whole.isEmpty():
-            for pane in self._panes:
+            for pane in self._those(only):
                 pane.show_rect(whole)
 
 

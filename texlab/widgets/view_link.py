@@ -106,25 +106,28 @@ class ViewLink(Link[Linked]):
             self._focus = rectangle
             self.fit()
 
-    def resized(self) -> None:
-        """Show the same again after a pane came, changed its size or was tiled."""
+    def resized(self, only: Linked | None = None) -> None:
+        """Show the same again after a pane came, changed its size or was tiled; in one pane, or in all."""
         if self._scale is None:
-            self.fit()
-            return
-        for pane in self._panes:
-            pane.show_around(self._centre, self._scale)
+            self._fit(only)
+        else:
+            for pane in self._those(only):
+                pane.show_around(self._centre, self._scale)
         self.rescaled()
 
     def fit(self) -> None:
         """Show the largest picture whole, and the others at the same scale."""
         self._scale = None
+        self._fit()
+        self.rescaled()
+
+    def _fit(self, only: Linked | None = None) -> None:
         factor = 2 if any(pane.tiled for pane in self._panes) else 1
         rectangle = self._focus or QRectF(0, 0, self._extent[1] * factor, self._extent[0] * factor)
-        for pane in self._panes:
+        for pane in self._those(only):
             pane.show_rect(rectangle)
             if self._focus is None and pane.shown_scale * self._thinnest < min(LEAST, self._thinnest):
                 self._show_corner(pane, rectangle, min(1.0, LEAST / self._thinnest))
-        self.rescaled()
 
     @staticmethod
     def _show_corner(pane: Linked, rectangle: QRectF, scale: float) -> None:
