@@ -414,6 +414,9 @@ def test_the_dock_says_what_belongs_to_a_step_and_hides_the_answer(qtbot: Any, s
     dock.save_button.click()
     dock.new_button.click()
     assert [type(each) for each in sent] == [GoToStep, LeaveLesson, SaveStep, NewLesson]
+    headings = [dock.list.topLevelItem(place).text(0) for place in range(dock.list.topLevelItemCount())]
+    assert headings[0].startswith("Chapter 11.1")
+    assert headings[-3:-1] == ["Beside the chapter", "Your own"]
     # A foreign name is text, whatever it looks like.
     assert item_of(dock, small).text(0) == "Small (3)"
 

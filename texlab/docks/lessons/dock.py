@@ -161,7 +161,8 @@ class LessonsDock(FramedDock):
         lessons, problems = answer
         self.list.clear()
         headings: dict[str, QTreeWidgetItem] = {}
-        for name, own, lesson in lessons:
+        # The chapter first, in its order; one's own last.
+        for name, own, lesson in sorted(lessons, key=lambda each: (each[1], not each[2].chapter)):
             heading = (
                 "Your own" if own else f"Chapter {lesson.chapter}" if lesson.chapter else "Beside the chapter"
             )
