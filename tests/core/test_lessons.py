@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +19,12 @@ from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.images.formats.writing import encode_png
 from texlab_core.lessons import page as pages
+from texlab_core.lessons import result_drawings
 from texlab_core.lessons.drawing import kinds
 from texlab_core.lessons.figure_index import figure_index, numbers
 from texlab_core.lessons.running import REDUCED_SIDE, check_lesson, jobs, run_lesson, run_step
 from texlab_core.lessons.shelf import bundled, find, own
+from texlab_core.sheets.contact_sheet import Tile, contact_sheet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -238,6 +241,39 @@ def test_a_bundled_lesson_is_written_as_it_would_be_written_again() -> None:
     for name, lesson in bundled().items():
         again = lesson_from_json(json.loads(json.dumps(lesson.to_json())))
         assert again == lesson, name
+
+
+def test_drawings_beside_the_words_have_captions_for_the_back_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    shares: list[float] = []
+
+    def noted(*args: Any, **more: Any) -> Any:
+        shares.append(more.get("share", 0.0))
+        return contact_sheet(*args, **more)
+
+    monkeypatch.setattr(result_drawings, "contact_sheet", noted)
+    shown = [
+        (lesson, step)
+        for lesson in bundled().values()
+        for step in lesson.steps
+        if step.tab is None and step.drawing is not None
+    ]
+    assert shown
+    for lesson, step in shown:
+        run_step(lesson, replace(step, series=None), reduced=True)
+    # At 1280 x 720 such a sheet has 760 pixels across: capitals are 0.7 of the size of their letters.
+    assert len(shares) == len(shown)
+    assert all(0.7 * share * 760 / 4.2 >= 720 / 40 for share in shares)
+
+
+def test_captions_of_a_share_are_that_large() -> None:
+    picture = np.ones((256, 256, 3), np.float32)
+
+    def ink(share: float) -> int:
+        sheet = contact_sheet([Tile(picture, ("H",))], 1, share=share)
+        return int((sheet.min((1, 2)) < 128).sum())
+
+    assert ink(0.2) == pytest.approx(0.2 * 256 * 0.71, abs=3)
+    assert ink(0) < 0.5 * ink(0.2)
 
 
 def test_every_kind_of_drawing_is_in_some_lesson() -> None:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from texlab_core.engine.steps import FloatImage
     from texlab_core.lessons.drawing import Scene
 
+# Captions as a part of a picture's side: beside a step's words they are read from the back row.
+CAPTIONS = 0.15
 _CELL = 256
 _FOUND, _CHOSEN = (213, 94, 0), (0, 158, 115)
 Box = tuple[int, int, int]
@@ -122,11 +124,11 @@ def _sources(settings: Sources, scene: Scene) -> Drawn:
     known: Any = (places >= 0).all(axis=2)
     inside = np.clip(places, 0, (height - 1, width - 1))
     shown = np.where(known[..., None], colours[inside[..., 0], inside[..., 1]], 1).astype(np.float32)
-    tiles += [Tile(colours, ("each place of it has a colour",)), Tile(shown, ("where the pixels come from",))]
+    tiles += [Tile(colours, ("colours of its places",)), Tile(shown, ("where pixels come from",))]
     measure = find_measure("copied-share")
     copied = measure.of(Subject.of_result(result))
     lines = () if copied is None else (f"{measure.title}: {measure.text(copied)}",)
-    return Drawn(contact_sheet(tiles, 4, largest=_CELL), lines)
+    return Drawn(contact_sheet(tiles, 4, largest=_CELL, share=CAPTIONS), lines)
 
 
 @dataclass(frozen=True, kw_only=True)

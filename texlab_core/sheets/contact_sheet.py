@@ -83,6 +83,7 @@ def contact_sheet(
     column_heads: Sequence[str] = (),
     row_heads: Sequence[str] = (),
     largest: int = LARGEST_CELL,
+    share: float = 0.0,
 ) -> NDArray[np.uint8]:
     """Draw pictures row by row, each with its caption, on white.
 
@@ -99,6 +100,9 @@ def contact_sheet(
     largest
         Longest side at which a picture is shown; when one is larger, all are scaled down together, by area
         averaging.
+    share
+        Size of the captions as a part of the largest picture's side, for sheets that are read from afar; 0 leaves
+        it to :func:`font_size`.
 
     Returns
     -------
@@ -110,7 +114,7 @@ def contact_sheet(
     sides = [max(tile.image.shape[:2]) for tile in tiles if tile.image is not None]
     scale = min(1.0, largest / max(sides, default=1))
     pictures = [None if tile.image is None else _rgb(picture_bytes(tile.image, scale)) for tile in tiles]
-    plan = _plan(tiles, pictures, columns, title, column_heads, row_heads)
+    plan = _plan(tiles, pictures, columns, title, column_heads, row_heads, share)
     sheet = Image.new("RGB", plan.size, _PAPER)
     draw = ImageDraw.Draw(sheet)
     pen = plan.pen
@@ -204,12 +208,13 @@ def _plan(
     title: Sequence[str],
     column_heads: Sequence[str],
     row_heads: Sequence[str],
+    share: float,
 ) -> _Plan:
     from PIL import ImageFont
 
     shapes = [(0, 0) if picture is None else picture.shape[:2] for picture in pictures]
     tallest, widest = (max(shape[axis] for shape in shapes) or _MIN_CELL for axis in (0, 1))
-    size = font_size(max(tallest, widest))
+    size = max(font_size(max(tallest, widest)) if share <= 0 else 0, round(share * max(tallest, widest)))
     pen = _Pen(None, ImageFont.load_default(size))
     width = max(widest, _MIN_CELL)
     left = _GAP + max((math.ceil(pen.font.getlength(text)) + _GAP for text in row_heads), default=0)
