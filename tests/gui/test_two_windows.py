@@ -146,6 +146,34 @@ def test_a_project_takes_no_session_away_that_is_kept(
         again.release()
 
 
+@pytest.mark.parametrize("cut", [0.0, 0.5])
+def test_a_damaged_project_loses_nothing(
+    qtbot: Any, open_window: Callable[..., Explorer], texlab_home: Path, tmp_path: Path, cut: float
+) -> None:
+    kept = sessions.claim()
+    write(kept, dataclasses.replace(state(1), notes="Mine."))
+    kept.release()
+    before = kept.path.read_bytes()
+    image = as_exemplar(np.zeros((16, 16, 3), np.float32), name="cell")
+    cell = State(Sample(image), (Column(1, "pixels", methods()["pixels"].params()),), 3, (16, 16), 2)
+    project = tmp_path / "work.texlab"
+    shutil.move(write_for_window(cell), project)
+    whole = project.read_bytes()
+    project.write_bytes(whole[: int(cut * len(whole))])
+    damaged = project.read_bytes()
+    opened = open_window(str(project), [("pixels", methods()["pixels"].params())], wait=False)
+    qtbot.waitUntil(lambda: opened.session.state.sample is not None)
+    # It says which file, and shows something; neither the file nor what was kept is touched.
+    assert "work.texlab" in opened.window.message_bar.label.text()
+    assert opened.session.state.sample.source.name.startswith("gallery:")
+    opened.window.close()
+    assert project.read_bytes() == damaged
+    assert kept.path.read_bytes() == before
+    again = sessions.claim()
+    assert [each.number for each in again.others] == [int(kept.path.stem)]
+    again.release()
+
+
 def test_another_window_is_another_process_of_the_same_program(
     explorer: Explorer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
