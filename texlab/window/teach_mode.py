@@ -154,7 +154,9 @@ class TeachMode(QObject):
     def _make_room(self, step: LessonStep) -> None:
         columns = [column.id for column in self._session.state.columns]
         self._hidden.clear()
-        room = self._window.width() // (LETTERS * self._window.fontMetrics().averageCharWidth())
+        # Beside larger words pictures would be small: there are fewer of them.
+        letters = LETTERS * max(1.0, self._window.layouts.zoom)
+        room = int(self._window.width() / (letters * self._window.fontMetrics().averageCharWidth()))
         self._kept = set(readable(columns, step.chosen, room - 1))
         # Experiments and drawings show the exemplar themselves, where there is one.
         alone = not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL)
