@@ -131,20 +131,22 @@ def test_sphere() -> None:
 
 
 def test_solids() -> None:
-    from texlab_core.figures._tools import title_of
-    from texlab_core.images.gallery import gallery
-
-    words = " ".join(stated("solid", "solids").split())
-    count, nearer, close, others = map(int, re.findall(r"(?<= )\d+(?= )", words)[:4])
-    named = words.partition("(")[2].partition(")")[0].split(", ")
-    assert count == len(gallery()) == nearer + close + others
-    assert len(named) == close
+    rows = [
+        [cell.strip() for cell in line.split("|")[1:-1]] for line in stated("solid", "solids").splitlines()[2:]
+    ]
+    many = len(_stated.SOLIDS)
+    assert [row[0] for row in rows] == [f"{k}, {b}" for k in ("laplacian", "mixed") for b in ("plain", "balanced")]
+    nearer = [int(re.fullmatch(rf"(\d+) of {many}", row[1])[1]) for row in rows]  # type: ignore[index]
+    farther, rises, left = (np.array([float(row[place]) for row in rows]) for place in (2, 3, 4))
+    for plain, balanced in ((0, 1), (2, 3)):
+        assert nearer[plain] < nearer[balanced]
+        assert farther[plain] > farther[balanced]
+        assert rises[plain] > 10 * rises[balanced]
+        assert left[plain] >= left[balanced]
     granite = _stated.solid_bands("stochastic-granite", "mixed")
-    assert not all(last < first for first, last in granite)
-    assert all(last < max(first, _stated.CLOSE) for first, last in granite)
-    assert title_of("stochastic-granite") in named
-    ribs = _stated.solid_bands("manmade-ribs", "laplacian")
-    assert sum(last >= first for first, last in ribs) == 1
+    assert (granite[:, -1] < granite[:, 0]).all()
+    ribs = _stated.solid_bands("manmade-ribs", "laplacian", balance=False)
+    assert (ribs[:, -1] >= ribs[:, 0]).sum() == 1
 
 
 def test_two_hits_of_five_stand_out_where_guessing_finds_eleven_of_a_hundred() -> None:

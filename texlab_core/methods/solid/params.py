@@ -35,6 +35,16 @@ class SolidParams(Params):
             when=("kind", ("mixed",)),
         ),
     ] = "pooled"
+    balance: Annotated[
+        bool,
+        Knob(
+            help="Correct every round so that no subband moves away from the exemplar's, in two to four times the "
+            "time. Off leaves the rounds as they are in the paper: some subbands then end farther off than those of "
+            "the noise.",
+            group="Synthesis",
+            when=("histograms", ("pooled",)),
+        ),
+    ] = False
     kind: Annotated[
         Literal["laplacian", "mixed"],
         Knob(

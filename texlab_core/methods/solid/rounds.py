@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from texlab_core.methods.heeger_bergen.analysis import band_keys
 from texlab_core.methods.heeger_bergen.rounds import match
-from texlab_core.methods.solid.slices import SlicePlan, match_slices
+from texlab_core.methods.solid.slices import CUTS, SlicePlan, match_slices
 from texlab_core.stats.histogram import match_ranks_in_place
 from texlab_core.transforms import laplacian, solid_laplacian
 from texlab_core.transforms.steerable import BandKey
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 Volume = NDArray[np.float32]
 
-# Which axes of a solid (depth, height, width) become slices, rows and columns, by the plane of the slices.
-CUTS = {"xy": (0, 1, 2), "xz": (1, 0, 2), "yz": (2, 0, 1)}
 # Samples that are copied or added between two pauses.
 PIECE = 2**18
 # So many slices across an axis are measured.
@@ -99,8 +97,8 @@ class Plan:
         """Short names of all bands that are matched: those of the solid, then those of the slices."""
         labels = [key.label for key in self.keys]
         if self.slices is not None:
-            for cut, axes in CUTS.items():
-                labels += [f"{cut}-{key.label}" for key in self.slices.keys(_slice_size(self.size, axes))]
+            for plane, axes in CUTS.items():
+                labels += [f"{plane}-{key.label}" for key in self.slices.keys(slice_size(self.size, axes))]
         return tuple(labels)
 
     @property
@@ -139,10 +137,10 @@ def match_round(
     distances = [found]
     if plan.slices is not None and model.slices is not None:
         for number, axes in enumerate(CUTS.values(), 1):
-            slices = yield from _cut(volume, axes)
+            slices = yield from cut(volume, axes)
             matched, found = yield from match_slices(slices, model.slices, plan.slices, partial(tie_key, number))
             distances.append(found)
-            yield from _add(solid, matched.transpose(np.argsort(axes)))
+            yield from add(solid, matched.transpose(np.argsort(axes)))
         for block in row_blocks(plan.size, PIECE):
             solid[block] *= np.float32(1 / (1 + len(CUTS)))
             yield solid[block].size // 8
@@ -204,11 +202,12 @@ def _match_solid(
     return solid, np.array(distances)
 
 
-def _slice_size(size: tuple[int, int, int], axes: tuple[int, int, int]) -> tuple[int, int]:
+def slice_size(size: tuple[int, int, int], axes: tuple[int, int, int]) -> tuple[int, int]:
+    """Return height and width of the slices that the axes of :data:`CUTS` make."""
     return size[axes[1]], size[axes[2]]
 
 
-def _cut(volume: Volume, axes: tuple[int, int, int]) -> Task[Volume]:
+def cut(volume: Volume, axes: tuple[int, int, int]) -> Task[Volume]:
     """Return the solid with the slices first, C-contiguous."""
     turned = volume.transpose(axes)
     slices = np.empty(turned.shape, np.float32)
@@ -218,7 +217,8 @@ def _cut(volume: Volume, axes: tuple[int, int, int]) -> Task[Volume]:
     return slices
 
 
-def _add(total: Volume, part: Volume) -> Task[None]:
+def add(total: Volume, part: Volume) -> Task[None]:
+    """Add one volume to another, in place."""
     for block in _blocks(total):
         total[block] += part[block]
         yield total[block].size // 8

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 Volume = NDArray[np.float32]
 
+# Which axes of a solid (depth, height, width) become slices, rows and columns, by the plane of the slices.
+CUTS = {"xy": (0, 1, 2), "xz": (1, 0, 2), "yz": (2, 0, 1)}
 # Samples of one batch of transforms: about 5 ms.
 BATCH = 2**17
 
@@ -51,8 +53,12 @@ class SlicePlan:
 
     def keys(self, size: tuple[int, int]) -> tuple[BandKey, ...]:
         """Return the places of the bands that are matched in slices of this size, from fine to coarse."""
-        keys = band_keys(min(self.levels, max_levels(size)), self.orientations)
+        keys = band_keys(self.levels_of(size), self.orientations)
         return keys[:-1] if self.pooled else keys
+
+    def levels_of(self, size: tuple[int, int]) -> int:
+        """Return how many levels slices of this size have."""
+        return min(self.levels, max_levels(size))
 
 
 def match_slices(
@@ -85,7 +91,7 @@ def match_slices(
         (bands,) float64: W1 / sd of every band before it was matched; the mean over the slices when they are
         matched one by one.
     """
-    whole = _Slices.of(slices, plan)
+    whole = Slices.of(slices, plan)
     spectrum = yield from whole.forward(slices)
     total = np.zeros_like(spectrum)
     distances = []
@@ -105,25 +111,29 @@ def match_slices(
 
 
 @dataclass(frozen=True, slots=True)
-class _Slices:
+class Slices:
     """The pyramid of one slice, applied to batches of them."""
 
     transform: Transform
     many: int
 
     @classmethod
-    def of(cls, slices: Volume, plan: SlicePlan) -> _Slices:
-        levels = min(plan.levels, max_levels(slices.shape[1:]))
-        return cls(Transform.of(slices[0], levels, plan.orientations), len(slices))
+    def of(cls, slices: Volume, plan: SlicePlan) -> Slices:
+        """Return the pyramid that fits slices (N, h, w)."""
+        size = (int(slices.shape[1]), int(slices.shape[2]))
+        return cls(Transform.of(slices[0], plan.levels_of(size), plan.orientations), len(slices))
 
     @property
     def size(self) -> tuple[int, int]:
+        """Height and width of a slice."""
         return self.transform.size
 
     def batches(self, size: tuple[int, int]) -> Iterator[slice]:
+        """Return the slices in batches, for transforms of this size."""
         return iter(row_blocks((self.many, *size), BATCH))
 
     def forward(self, slices: Volume) -> Task[NDArray[Any]]:
+        """Return the half spectra of all slices."""
         from scipy import fft
 
         spectrum = np.empty((self.many, *spectrum_size(self.size)), np.complex64)
@@ -133,6 +143,7 @@ class _Slices:
         return spectrum
 
     def inverse(self, total: NDArray[Any]) -> Task[Volume]:
+        """Return the slices of half spectra, which are overwritten."""
         from scipy import fft
 
         slices = np.empty((self.many, *self.size), np.float32)
@@ -142,6 +153,7 @@ class _Slices:
         return slices
 
     def band(self, spectrum: NDArray[Any], key: BandKey) -> Task[Volume]:
+        """Return one subband of all slices."""
         from scipy import fft
 
         response = yield from self.transform.response(key)
@@ -159,6 +171,7 @@ class _Slices:
         return band
 
     def add(self, total: NDArray[Any], key: BandKey, band: Volume) -> Task[None]:
+        """Filter a subband of all slices again and add it to their half spectra."""
         from scipy import fft
 
         response = yield from self.transform.response(key)

@@ -13,8 +13,10 @@ from texlab_core.engine.steps import Output, Step, middle_slice
 from texlab_core.methods.heeger_bergen import analysis
 from texlab_core.methods.heeger_bergen.rounds import match
 from texlab_core.methods.heeger_bergen.staged import Staged, distance_curve, mean
-from texlab_core.methods.solid.rounds import CUTS, AxisModel, Plan, match_round, measure, measure_slices
-from texlab_core.methods.solid.slices import SlicePlan
+from texlab_core.methods.solid.balance import State, balanced_round, begin
+from texlab_core.methods.solid.classes import Classes, classes_of
+from texlab_core.methods.solid.rounds import AxisModel, Plan, match_round, measure, measure_slices
+from texlab_core.methods.solid.slices import CUTS, SlicePlan
 from texlab_core.methods.solid.told import BANDS, SLICES, VOXELS
 from texlab_core.transforms import gaussian, solid_laplacian
 from texlab_core.work.tasks import finish, row_blocks
@@ -35,8 +37,10 @@ if TYPE_CHECKING:
 STRIDE = 2**16
 # Units of progress in each stage.
 UNITS = 1000
-# W1 / sd at which bands of solid and slices settle: they cannot all be the exemplar's (see the help page).
+# W1 / sd at which bands settle when nothing keeps them from moving away.
 SETTLED = 0.1
+# Less than can be measured.
+NOTHING = 1e-6
 
 
 class Synthesis(Staged):
@@ -79,6 +83,9 @@ class Synthesis(Staged):
         self.volume: FloatVolume | None = None
         self.labels = self.plan.labels
         self.distances = np.zeros((params.iterations, len(self.models), len(self.labels)))
+        self.balanced = params.balance and params.histograms == "pooled" and params.iterations > 0
+        self.states: list[State] = []
+        self.classes: Classes | None = None
         self.measures: dict[str, float] = {}
 
     def start(self) -> Generator[Step, None, None]:
@@ -92,6 +99,12 @@ class Synthesis(Staged):
             work = match(plane, target.solid.pixels, "exact", self.streams.key("start", axis))
             yield from self._steps(work, "noise")
             self.planes.append(plane)
+        if self.balanced and self.models:
+            self.classes = yield from self._steps(
+                classes_of(self.size, self.plan.levels, self.plan.slices), "noise"
+            )
+            for plane, model in zip(self.planes, self.models, strict=True):
+                self.states.append((yield from self._steps(begin(plane, model, self.plan), "noise")))
         self._next_stage()
         yield self._step("noise", frame="noise")
 
@@ -113,6 +126,11 @@ class Synthesis(Staged):
         self, iteration: int, axis: int, plane: NDArray[np.float32]
     ) -> Task[tuple[int, NDArray[np.float32], NDArray[np.float64]]]:
         key = partial(self.streams.key, "ties", iteration, axis)
+        if self.classes is not None:
+            before = self.states[axis]
+            after = yield from balanced_round(before, self.models[axis], self.plan, self.classes, key)
+            self.states[axis] = after
+            return axis, after.volume, before.distances
         matched, distances = yield from match_round(plane, self.models[axis], self.plan, key)
         return axis, matched, distances
 
@@ -175,7 +193,9 @@ class Synthesis(Staged):
         curves = {"mean-distance": distance_curve(means, "Distance of the subbands, mean")}
         for index, label in enumerate(self.labels):
             values = [mean(each[:, index]) for each in self.distances]
-            if index < len(self.plan.keys):
+            if self.states:
+                values.append(mean(np.array([state.distances[index] for state in self.states])))
+            elif index < len(self.plan.keys):
                 values.append(mean(final[:, index]) if final.size else 0.0)
             curves[f"band-{label}"] = distance_curve(values, f"Distance of subband {label}")
         return Output(volume=volume, curves=curves, measures=self.measures, notes=self._notes())
@@ -190,15 +210,23 @@ class Synthesis(Staged):
             notes.append(
                 f"{scales} fit an exemplar of {width} x {height} pixels and a solid of {size_text(self.size)}."
             )
-        if self.plan.slices is not None and len(self.distances) > 1:
-            first, last = (self.distances[place].mean(axis=0) for place in (0, -1))
-            farther = int(((last > first) & (last > SETTLED)).sum())
-            if farther:
-                notes.append(
-                    f"{farther} of {last.size} bands are farther from the exemplar's than those of the noise were:"
-                    " what it asks of slices along the three axes does not go together in one solid."
-                )
+        if farther := self._farther():
+            notes.append(
+                f"{farther} of {len(self.labels)} bands are farther from the exemplar's than those of the noise"
+                " were: what it asks of slices along the three axes does not go together in one solid."
+            )
         return tuple(notes)
+
+    def _farther(self) -> int:
+        """Return how many bands end farther from the exemplar's than they began, mean over the colour axes."""
+        if self.states:
+            first = np.mean([state.first for state in self.states], axis=0)
+            last = np.mean([state.distances for state in self.states], axis=0)
+            return int((last > first + NOTHING).sum())
+        if self.plan.slices is None or len(self.distances) < 2:
+            return 0
+        first, last = (self.distances[place].mean(axis=0) for place in (0, -1))
+        return int(((last > first) & (last > SETTLED)).sum())
 
     def _preview(self) -> FloatImage:
         middle = self.size[0] // 2
