@@ -39,7 +39,7 @@ class SolidParams(Params):
         bool,
         Knob(
             help="Correct every round so that no subband moves away from the exemplar's, in two to four times the "
-            "time. Off leaves the rounds as they are in the paper: some subbands then end farther off than those of "
+            "time. Off leaves the rounds as in the paper: some subbands then end farther off than those of "
             "the noise.",
             group="Synthesis",
             when=("histograms", ("pooled",)),
