@@ -141,3 +141,16 @@ def test_a_sweep_is_stopped_with_what_it_has(
     stopped = controller.scene().sweep
     assert (stopped.status, stopped.running) == ("stopped", False)
     assert len(stopped.cells) == 3
+
+
+def test_a_column_that_was_removed_holds_no_picture(controller: Controller) -> None:
+    shown = controller.column_scene(2)
+    assert shown is not None
+    assert shown.result is not None
+    assert shown.picture is not None
+    controller.session.remove_column(2)
+    # Its runner waits for its thread, and for another one to go.
+    (gone,) = controller._leaving
+    assert gone.scene.id == 2
+    assert (gone.scene.result, gone.scene.picture, gone.scene.image) == (None, None, None)
+    assert not gone.scene.frames

@@ -257,6 +257,11 @@ class ColumnRunner(QObject):
         self.worker.leave()
         self.measurer.leave()
 
+    def forget(self) -> None:
+        """Let go of the result, its frames and its picture: the column is shown no more."""
+        gone = self.scene
+        self.scene = ColumnScene(gone.id, gone.method, gone.title, gone.params, inputs=gone.inputs)
+
     def close(self) -> None:
         """Stop the thread and wait for its end."""
         self.worker.close()

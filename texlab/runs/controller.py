@@ -330,6 +330,8 @@ class Controller(QObject):
     def _let_go(self, runner: ColumnRunner) -> None:
         """End a column without waiting: the window must not stand still while it comes to a stop."""
         runner.leave()
+        # It waits here until another column goes.
+        runner.forget()
         for ended in [each for each in self._leaving if each.ended]:
             self._leaving.remove(ended)
             ended.deleteLater()
