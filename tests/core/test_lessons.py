@@ -62,6 +62,9 @@ LESSON: dict[str, Any] = {
 }
 
 
+TAKEN: dict[str, Any] = {"source": "gallery:stochastic-lava"}
+
+
 def changed(*path: str | int, to: Any) -> dict[str, Any]:
     """Return the lesson with one value replaced, or left out when ``to`` is Ellipsis."""
     data = copy.deepcopy(LESSON)
@@ -84,6 +87,56 @@ def test_a_lesson_comes_back_from_its_json_as_it_was(tmp_path: Path) -> None:
     assert lesson.steps[0].size == (56, 64)
 
 
+@pytest.mark.parametrize(
+    ("more", "version"),
+    [
+        ({}, 1),
+        ({"levels": [0.1, 0.8, 1.2]}, 2),
+        ({"alpha": "black"}, 2),
+        ({"levels": [0, 1, 2], "alpha": "keep"}, 2),
+    ],
+)
+def test_levels_and_transparency_come_back_in_the_least_version(more: dict[str, Any], version: int) -> None:
+    crop = {"top": 0, "left": 1, "height": 20, "width": 30}
+    data = changed("steps", 0, "exemplar", to={**TAKEN, "crop": crop, **more}) | {"version": version}
+    lesson = lesson_from_json(data)
+    assert lesson.to_json() == data
+    taken = lesson.steps[0].exemplar
+    assert taken is not None
+    assert taken.alpha == more.get("alpha", "white")
+    assert (None if taken.levels is None else taken.levels.to_json()) == more.get("levels")
+    # What was written by hand may still have the older number.
+    assert lesson_from_json(data | {"version": 1}) == lesson
+
+
+def test_a_step_works_on_its_levels_and_transparency(tmp_path: Path) -> None:
+    pixels = np.random.default_rng(4).integers(0, 256, (24, 20, 4), np.uint8)
+    (tmp_path / "glass.png").write_bytes(encode_png(pixels))
+    colours, alpha = pixels[..., :3] / np.float32(255), pixels[..., 3:] / np.float32(255)
+    expected = {
+        "white": colours * alpha + (1 - alpha),
+        "black": colours * alpha,
+        "ignore": colours,
+        "keep": colours,
+    }
+    for use, seen in expected.items():
+        step = {
+            "sentence": "Glass.",
+            "exemplar": {"source": "glass.png", "alpha": use, "levels": [0.2, 0.9, 1.5]},
+            "size": {"width": 16, "height": 16},
+            "seed": 1,
+            "columns": [{"method": "pixels"}],
+        }
+        lesson = lesson_from_json(LESSON | {"version": 2, "steps": [step]}, folder=tmp_path)
+        for reduced in (False, True):
+            shown = run_step(lesson, lesson.steps[0], reduced=reduced)
+            assert shown.exemplar is not None
+            levelled = np.clip((seen - 0.2) / 0.7, 0, 1) ** (1 / 1.5)
+            np.testing.assert_allclose(shown.exemplar.pixels, levelled, atol=2e-5)
+            assert (shown.exemplar.alpha is not None) == (use == "keep")
+            assert shown.results[0].job.inputs["exemplar"].sha256 == shown.exemplar.sha256
+
+
 @pytest.mark.parametrize("key", sorted(STEP))
 def test_every_key_of_a_step_is_checked_and_named(key: str) -> None:
     with pytest.raises(LessonError, match=rf"^The lesson cannot be used: step 1: .*{key}"):
@@ -92,7 +145,7 @@ def test_every_key_of_a_step_is_checked_and_named(key: str) -> None:
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "another format": (changed("format", to="texlab-preset"), "no lesson"),
-    "a newer version": (changed("version", to=2), "version 2"),
+    "a newer version": (changed("version", to=3), "version 3"),
     "no title": (changed("title", to=""), "title: must be 1 to 80"),
     "an unknown key": (changed("teacher", to="me"), "teacher"),
     "no steps": (changed("steps", to=[]), "steps: must be a list of 1 to 60, got 0"),
@@ -121,6 +174,17 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         "takes none here",
     ),
     "an input that is missing": (changed("steps", 0, "columns", 0, to={"method": "mixture"}), "needs second"),
+    "levels upside down": (
+        changed("steps", 0, "exemplar", to={**TAKEN, "levels": [0.9, 0.1, 1]}),
+        "levels: .*0.9",
+    ),
+    "levels of two numbers": (changed("steps", 0, "exemplar", to={**TAKEN, "levels": [0, 1]}), "levels: "),
+    "levels in words": (changed("steps", 0, "exemplar", to={**TAKEN, "levels": "auto"}), "levels: .*auto"),
+    "another transparency": (
+        changed("steps", 0, "exemplar", to={**TAKEN, "alpha": "pink"}),
+        "alpha: must be one of white, black, ignore, keep, got .*pink",
+    ),
+    "a number for transparency": (changed("steps", 0, "exemplar", to={**TAKEN, "alpha": 1}), "alpha: .*got 1"),
     "a size of three sides": (changed("steps", 0, "size", to={"width": 4, "height": 4, "depth": 4}), "size"),
 }
 

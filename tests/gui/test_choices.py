@@ -14,13 +14,13 @@ from PySide6.QtWidgets import QFileDialog
 
 from tests.gui.conftest import hb, ids, wait_idle
 from texlab.state.changes import as_a_whole, at_full_size, is_reduced, reduced_words, sample_of
-from texlab.state.chosen import TRANSPARENCY, Sample
+from texlab.state.chosen import Sample
 from texlab.state.session import Session
 from texlab.window.save_kinds import chosen_bits, named, save_kinds, saved_words
 from texlab_core.images.exemplar import as_exemplar
 from texlab_core.images.formats.reading import read_image
 from texlab_core.images.formats.writing import check_format
-from texlab_core.images.unit_range import use_of_alpha
+from texlab_core.images.unit_range import TRANSPARENCY, use_of_alpha
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 from dock_scenes import feed, scene_of
 from PySide6.QtCore import QObject, Qt
@@ -16,14 +18,19 @@ from texlab.docks.lessons.dock import LessonsDock
 from texlab.docks.lessons.editor import ORDER_KEYS, LessonEditor
 from texlab.runs import lesson_runner
 from texlab.runs.controller import Controller
+from texlab.state.chosen import Sample, State
 from texlab.state.intentions import ChangeLesson, CopyLesson, GoToStep, LeaveLesson, SaveStep, UndoLesson
 from texlab.state.lesson_edits import Version, Versions, doubled, moved, removed, shown_alike, with_steps
 from texlab.state.lesson_scene import LessonScene
+from texlab.state.lessons import Draft, file_of, state_of, step_of
 from texlab.state.session import Session
 from texlab.storage.paths import config_dir
 from texlab.widgets.settling import settle_all
-from texlab.window.lesson_desk import LessonDesk
-from texlab_core.documents.lessons import Lesson, LessonStep, lesson_from_json, read_lesson
+from texlab.window.lesson_desk import LessonDesk, save_picture
+from texlab_core.documents.lessons import Lesson, LessonStep, lesson_from_json, read_lesson, write_lesson
+from texlab_core.engine.inputs import Crop
+from texlab_core.engine.levels import Levels
+from texlab_core.images.exemplar import as_exemplar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -407,3 +414,28 @@ def test_a_bundled_lesson_becomes_ones_own_and_the_palette_finds_it(qtbot: Any, 
     qtbot.waitUntil(lambda: explorer.teacher.scene.own and explorer.teacher.scene.lesson is not None)
     explorer.carrier.carry_out(LeaveLesson())
     wait_idle(qtbot, explorer)
+
+
+def test_a_step_that_is_saved_has_levels_and_transparency(tmp_path: Path) -> None:
+    pixels = np.random.default_rng(8).integers(0, 256, (24, 20, 4)).astype(np.uint8)
+    whole = as_exemplar(pixels, name="glass.png", alpha="keep")
+    sample = Sample(whole, 1.0, Crop(2, 3, 16, 12), alpha="keep", levels=Levels(0.1, 0.8, 1.3))
+    file = file_of(whole)
+    step = step_of(Draft(State(sample, (), 1, (16, 16), 1)), "Glass.", file)
+    save_picture(whole, tmp_path / file)
+    write_lesson(Lesson(title="Glass", steps=(step,), folder=tmp_path), tmp_path / "glass.json")
+    opened = lesson_runner._opened("glass", lambda: read_lesson(tmp_path / "glass.json"))
+    (pictures,) = opened.pictures
+    assert pictures.sample is not None
+    assert pictures.exemplar is not None
+    shown = state_of(opened.lesson.steps[0], pictures, State(), 1).sample
+    assert shown is not None
+    assert (shown.levels, shown.alpha, shown.crop) == (sample.levels, "keep", sample.crop)
+    used = as_exemplar(whole, crop=sample.crop, levels=sample.levels)
+    assert np.array_equal(pictures.exemplar.pixels, used.pixels)
+    assert used.alpha is not None
+    assert np.array_equal(pictures.exemplar.alpha, used.alpha)
+    # Levels for the eye alone are none of the picture's.
+    look = step_of(Draft(State(replace(sample, look_only=True), (), 1, (16, 16), 1)), "Glass.", file)
+    assert look.exemplar is not None
+    assert look.exemplar.levels is None

@@ -10,7 +10,8 @@ import pytest
 from dock_scenes import column_of, noise
 from painted_text import cut, lines_of, overlapping, painted
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QApplication, QMainWindow, QVBoxLayout, QWidget
 
 from tests.gui.conftest import ids, wait_idle
 from tests.gui.test_lessons import SMALL, give, wait_ready
@@ -22,10 +23,10 @@ from texlab.docks.lab.page import best_columns
 from texlab.docks.spectral.code import CodeDock
 from texlab.docks.spectral.code_views import CodeGrid
 from texlab.docks.steps import StepsDock
-from texlab.state.intentions import LeaveLesson
+from texlab.state.intentions import GoToStep, LeaveLesson
 from texlab.storage.paths import config_dir
 from texlab.style.colouring import SEQUENTIAL_TABLE
-from texlab.style.text_size import set_least
+from texlab.style.text_size import capitals_of, set_least, teach_points
 from texlab.style.theme import LIGHT, set_text_size
 from texlab.widgets.headed import headed
 from texlab.widgets.heat_map import HeatMap
@@ -36,6 +37,7 @@ from texlab.widgets.scroll_room import ScrollRoom
 from texlab.widgets.short_box import ShortBox
 from texlab.widgets.status_line import StatusLine
 from texlab.widgets.view_link import ViewLink
+from texlab.window.lesson_bar import LessonBar
 from texlab.window.teach_mode import readable
 
 if TYPE_CHECKING:
@@ -313,3 +315,77 @@ def check_teach_again_gives_a_tab_without_pictures_its_room(qtbot: Any, explorer
     window.actions_by_name["layout-teach"].trigger()
     qtbot.waitUntil(lambda: window.docks["lab"].height() > 0.7 * window.height())
     assert not explorer.workspace.isVisible()
+
+
+WORDS = "Conditional sampling over an oriented pyramid: each orientation is one more condition."
+PICTURES: dict[str, Any] = {key: SMALL["steps"][0][key] for key in ("exemplar", "size", "seed", "columns")}
+TALL: dict[str, Any] = SMALL | {
+    "title": "Large words",
+    "steps": [
+        {"sentence": WORDS, "note": "Pictures and words.", **PICTURES},
+        {"sentence": WORDS, "tab": {"name": "lab", "settings": {"experiments": "lab-plane"}}},
+        {"sentence": WORDS, **PICTURES, "tab": "histograms"},
+        {"sentence": "Short.", **PICTURES, "tab": "spectrum"},
+        {"sentence": "Short.", **PICTURES},
+    ],
+}
+
+
+def test_beside_large_words_a_step_has_room_in_the_window_as_it_is(qtbot: Any, explorer: Explorer) -> None:
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    (folder / "tall.json").write_text(json.dumps(TALL))
+    window, workspace = explorer.window, explorer.workspace
+    give(qtbot, explorer, "tall")
+    wait_ready(qtbot, explorer)
+    window.resize(1280, 720)
+    window.actions_by_name["layout-teach"].trigger()
+    pictures_seen = []
+    for turns in (0, 7):
+        for _ in range(turns):
+            # 200 % and back to the usual size at the end.
+            window.actions_by_name["text-larger" if window.layouts.zoom < 2 else "text-usual"].trigger()
+            if window.layouts.zoom == 2:
+                break
+        qtbot.waitUntil(lambda: window.fontMetrics().capHeight() >= window.layouts.zoom * 720 / 40 - 1)
+        for place in range(len(TALL["steps"])):
+            explorer.carrier.carry_out(GoToStep(place))
+            wait_idle(qtbot, explorer)
+            qtbot.waitUntil(lambda: (window.width(), window.height()) == (1280, 720))
+            for _ in range(4):
+                QApplication.processEvents()
+            assert (window.width(), window.height()) == (1280, 720), (place, window.layouts.zoom)
+            assert cut(window.lesson_bar, painted(window.lesson_bar)) == []
+            if workspace.isVisible():
+                pictures_seen.append((place, window.layouts.zoom))
+                bars = workspace.horizontalScrollBar(), workspace.verticalScrollBar()
+                assert [bar.maximum() for bar in bars] == [0, 0], (place, window.layouts.zoom)
+    assert window.layouts.zoom == 2
+    # At the usual size pictures stand beside every tab but the experiment; at the largest where there is room.
+    assert {place for place, zoom in pictures_seen if zoom == 1} == {0, 2, 3, 4}
+    assert (4, 2.0) in pictures_seen
+    window.actions_by_name["text-usual"].trigger()
+    window.actions_by_name["layout-explore"].trigger()
+    explorer.carrier.carry_out(LeaveLesson())
+    wait_idle(qtbot, explorer)
+
+
+def test_a_long_sentence_has_lines_of_its_own_beside_large_words(qtbot: Any, taught: None, qapp: Any) -> None:
+    window = QMainWindow()
+    qtbot.addWidget(window)
+    bar = LessonBar({name: QAction(name, window) for name in ("lesson-back", "lesson-next", "lesson-leave")})
+    window.setCentralWidget(bar)
+    window.resize(1280, 720)
+    bar.show()
+    window.show()
+    large = teach_points(720, 2.0, capitals_of(qapp.font()))
+    for points, words, alone in ((20.0, "Short.", False), (large, "Short.", False), (large, WORDS, True)):
+        set_least(points)
+        set_text_size(qapp, points, LIGHT)
+        bar.count.setText("3 of 12")
+        bar.readiness.setText("7 of 12 ready")
+        bar.sentence.setText(words)
+        QApplication.processEvents()
+        assert (bar.sentence.y() >= bar.count.geometry().bottom()) == alone
+        assert bar.sentence.height() >= lines_of(bar.sentence)
+        assert bar.minimumSizeHint().height() <= 0.3 * window.height()

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from texlab.runs.column_run import Finished, TaskLike
     from texlab.runs.column_runner import Shared
     from texlab_core.documents.lessons import Lesson
+    from texlab_core.engine.inputs import ImageInput
     from texlab_core.lessons.drawing import Drawn
 
 
@@ -193,28 +194,24 @@ def _opened(name: str, read: Callable[[], Lesson]) -> Opened:
 
     lesson = read()
     check_lesson(lesson)
-    read_before: dict[object, object] = {}
+    read_before: dict[object, ImageInput] = {}
     return Opened(name, lesson, tuple(_pictures(lesson, place, read_before) for place in range(len(lesson.steps))))
 
 
-def _pictures(lesson: Lesson, place: int, before: dict[object, object]) -> StepPictures:
+def _pictures(lesson: Lesson, place: int, before: dict[object, ImageInput]) -> StepPictures:
     """Read a step's pictures; a texture that several steps use is read once."""
     from texlab_core.images.exemplar import as_exemplar
-    from texlab_core.lessons.running import picture
+    from texlab_core.lessons.running import picture, read_picture, taken_from
 
     step = lesson.steps[place]
     if step.exemplar is None:
         return StepPictures(inputs=tuple(() for _ in step.columns))
-    source = str(lesson.locate(step.exemplar))
+    source = lesson.locate(step.exemplar), step.exemplar.alpha
     if source not in before:
-        before[source] = as_exemplar(source)
-    whole = before[source]
-    sample = sample_as_used(as_exemplar(whole, crop=step.exemplar.crop, scale=step.exemplar.scale))  # type: ignore[arg-type]
-    exemplar = (
-        as_exemplar(sample.source, scale=sample.scale, crop=sample.crop)
-        if sample.crop or sample.scale != 1
-        else sample.source
-    )
+        before[source] = read_picture(lesson, step.exemplar)
+    used = sample_as_used(taken_from(before[source], step.exemplar))
+    sample = dataclasses.replace(used, alpha=step.exemplar.alpha)
+    exemplar = as_exemplar(sample.source, scale=sample.scale, crop=sample.crop, levels=sample.levels)
     inputs = tuple(
         tuple((name, picture(lesson, each)) for name, each in column.inputs.items()) for column in step.columns
     )

@@ -14,22 +14,14 @@ if TYPE_CHECKING:
     from texlab_core.engine.inputs import Crop, ImageInput, Input
     from texlab_core.engine.levels import Levels
     from texlab_core.engine.params import Params
-    from texlab_core.images.unit_range import Alpha
-
-# Use and background, as the door takes them.
-TRANSPARENCY: dict[str, tuple[Alpha, float]] = {
-    "white": ("background", 1.0),
-    "black": ("background", 0.0),
-    "ignore": ("ignore", 1.0),
-    "keep": ("keep", 1.0),
-}
 
 
 @dataclass(frozen=True)
 class Sample:
     """The exemplar as chosen: a source image, scaled first, then cropped.
 
-    ``alpha`` is how its transparency was read: a key of :data:`TRANSPARENCY`. ``levels`` come after the crop,
+    ``alpha`` is how its transparency was read: a key of
+    :data:`texlab_core.images.unit_range.TRANSPARENCY`. ``levels`` come after the crop,
     for the methods too or, with ``look_only``, for what is shown.
     """
 

@@ -93,7 +93,10 @@ def step_of(draft: Draft, sentence: str, file: str) -> LessonStep:
     if state.sample is None:
         raise LessonError("There is no exemplar yet, so there is no step to keep.")
     places = [column.id for column in state.columns]
-    taken = Taken(source_of(state.sample.source, file), state.sample.crop, state.sample.scale)
+    sample = state.sample
+    # Any other transparency has become part of the picture that is kept.
+    alpha = "white" if sample.source.alpha is None else "keep"
+    taken = Taken(source_of(sample.source, file), sample.crop, sample.scale, sample.used_levels, alpha)
     pixel = None
     if draft.pixel is not None and draft.pixel[0] in places:
         pixel = Place(places.index(draft.pixel[0]), *draft.pixel[1:])
@@ -117,6 +120,11 @@ def source_of(image: ImageInput, file: str) -> str:
     return image.name if image.name.startswith("gallery:") else file
 
 
+def file_of(image: ImageInput) -> str:
+    """Return the name of the file in which a picture is kept beside a lesson."""
+    return f"{image.sha256[:16]}{'' if image.alpha is None else '-alpha'}.png"
+
+
 def _column(column: Column) -> StepColumn:
     inputs = {}
     for name, each in column.inputs:
@@ -126,7 +134,10 @@ def _column(column: Column) -> StepColumn:
             )
         origin = each.origin
         inputs[name] = Taken(
-            each.name, None if origin is None else origin.crop, 1.0 if origin is None else origin.scale
+            each.name,
+            None if origin is None else origin.crop,
+            1.0 if origin is None else origin.scale,
+            None if origin is None else origin.levels,
         )
     return StepColumn.from_json(
         {

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeGuard
 
 from texlab.state.changes import Opened
-from texlab.state.chosen import TRANSPARENCY
 from texlab.storage.kept_exemplar import Kept, kept_exemplar, load
 from texlab.widgets.pasted import Pasted, pixels_of
 from texlab_core.engine.inputs import Crop, DataInput, ImageInput
+from texlab_core.images.unit_range import TRANSPARENCY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from texlab.runs.worker import Worker
-from texlab.state.lessons import Draft, source_of, step_of
+from texlab.state.lessons import Draft, file_of, source_of, step_of
 from texlab.storage.sessions import writing
 from texlab_core.errors import InputError
 
@@ -83,7 +83,7 @@ class LessonDesk:
     def step(self, name: str, sentence: str) -> LessonStep:
         """Return what the window shows as a step of the lesson of this name; LessonError when it cannot be one."""
         sample = self._controller.session.state.sample
-        file = "" if sample is None else f"{name}/{sample.source.sha256[:16]}.png"
+        file = "" if sample is None else f"{name}/{file_of(sample.source)}"
         return step_of(self._draft(), sentence, file)
 
     def free_name(self, title: str) -> str:
@@ -137,7 +137,7 @@ class LessonDesk:
 
         self.folder.mkdir(parents=True, exist_ok=True)
         if image is not None and source_of(image, "") == "":
-            save_picture(image.pixels, self.folder / name / f"{image.sha256[:16]}.png")
+            save_picture(image, self.folder / name / file_of(image))
         # No other window writes between the look and the writing.
         with writing(LESSONS):
             kept = self.current(name)
@@ -210,13 +210,16 @@ def read(wanted: OpenLesson, folder: Path | None) -> Lesson:
     return read_lesson(folder / f"{wanted.name}.json") if wanted.own and folder is not None else find(wanted.name)
 
 
-def save_picture(pixels: Any, path: Path) -> None:
-    """Write the exemplar of a step beside its lesson, unless it is there (in the background)."""
+def save_picture(image: ImageInput, path: Path) -> None:
+    """Write a step's exemplar with its transparency beside its lesson, unless it is there (in the background)."""
     import numpy as np
 
     from texlab_core.files.whole import write_whole
     from texlab_core.images.formats.writing import encode_png
 
     if not path.exists():
+        pixels = image.pixels
+        if image.alpha is not None:
+            pixels = np.concatenate([np.broadcast_to(pixels, (*image.size, 3)), image.alpha], 2)
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, encode_png(np.rint(pixels * 255).astype(np.uint8)))

@@ -32,6 +32,10 @@ EXEMPLAR = 0
 NOTES_FACTOR = 1.2
 # As many columns of a step stand beside the exemplar as have room for so many letters each.
 LETTERS = 18
+# The exemplar stands beside a column where there is room for so many pictures.
+LEAST_BESIDE = 2
+# The part of the height for seams, and for what a tab says only when its answer has come.
+SLACK = 0.05
 # Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
 SHOW_ALL = ("lab", "lessons")
 SHARE_WITHOUT_COLUMNS = 0.6
@@ -65,9 +69,9 @@ class TeachMode(QObject):
         layouts.leaving, layouts.changed = self._close_overlays, self.show_layout
         actions["text-larger"].setShortcuts([QKeySequence("Ctrl++"), QKeySequence("Ctrl+=")])
         for name, call in (
-            ("text-larger", lambda: layouts.set_zoom(next_zoom(layouts.zoom, 1))),
-            ("text-smaller", lambda: layouts.set_zoom(next_zoom(layouts.zoom, -1))),
-            ("text-usual", lambda: layouts.set_zoom(1.0)),
+            ("text-larger", lambda: self._set_zoom(next_zoom(layouts.zoom, 1))),
+            ("text-smaller", lambda: self._set_zoom(next_zoom(layouts.zoom, -1))),
+            ("text-usual", lambda: self._set_zoom(1.0)),
             ("next-tab", partial(self.step_tab, 1)),
             ("previous-tab", partial(self.step_tab, -1)),
             ("overlay-gallery", partial(self.toggle_side, "gallery")),
@@ -158,13 +162,37 @@ class TeachMode(QObject):
         letters = LETTERS * max(1.0, self._window.layouts.zoom)
         room = int(self._window.width() / (letters * self._window.fontMetrics().averageCharWidth()))
         self._kept = set(readable(columns, step.chosen, room - 1))
+        if columns and room < LEAST_BESIDE:
+            # A picture that has to be scrolled into sight is not seen; the exemplar is one key away.
+            self._hidden.add(EXEMPLAR)
         # Experiments and drawings show the exemplar themselves, where there is one.
         alone = not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL)
+        share = HEIGHTS["teach"] if columns else SHARE_WITHOUT_COLUMNS
+        if not alone:
+            self._show_columns()
+            left = self._height_beside_pictures()
+            tab = self._window.docks.get(tab_of(step))
+            # Where large words leave no room for both, the tab comes first: the pictures are one key away.
+            alone = tab is not None and tab.minimumSizeHint().height() > left
+            share = min(share, left / self._window.height())
         self._window.actions_by_name["tab-alone"].setChecked(alone)
         # The sentence has other lines than the one before.
         self._window.settle_middle()
-        share = 1.0 if alone else HEIGHTS["teach"] if columns else SHARE_WITHOUT_COLUMNS
-        self._window.layouts.share_height(share)
+        self._window.layouts.share_height(1.0 if alone else share)
+
+    def _height_beside_pictures(self) -> int:
+        """Return what sentence and pictures leave of the window's height."""
+        window = self._window
+        self._workspace.place()
+        bar, menu = window.lesson_bar, window.menuBar()
+        taken = bar.minimumSizeHint().height() + self._workspace.grid.minimumHeight()
+        return round((1 - SLACK) * window.height()) - taken - (menu.height() if menu.isVisible() else 0)
+
+    def _set_zoom(self, zoom: float) -> None:
+        self._window.layouts.set_zoom(zoom)
+        if self.on and self._lesson.step is not None:
+            self._make_room(self._lesson.step)
+            self._show_columns()
 
     # Columns.
 

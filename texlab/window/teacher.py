@@ -26,6 +26,7 @@ from texlab.state.scene import Probe
 from texlab.style.pictures import Mark
 from texlab.widgets.settling import settle_all
 from texlab.window.lesson_desk import LessonDesk, read, tab_of
+from texlab.window.same_size import SameSize
 from texlab.window.tabs_ahead import TabsAhead
 from texlab_core.documents.lesson_parts import LessonError
 from texlab_core.documents.lessons import MAX_STEPS
@@ -98,6 +99,7 @@ class Teacher(QObject):
         self.runner.opened.connect(self._begin)
         self.runner.advanced.connect(self._tell)
         self.runner.failed.connect(controller.problem)
+        self._sizing = SameSize(window)
         self.tabs = TabsAhead(hosts, self)
         self.tabs.advanced.connect(self._tell)
         presenter.painted.connect(self._painted)
@@ -186,6 +188,7 @@ class Teacher(QObject):
         if opened is None or not 0 <= place < len(opened.lesson.steps):
             return
         step, pictures = opened.lesson.steps[place], opened.pictures[place]
+        self._sizing.keep()
         column_id = self._first_id + (step.series.column if step.series is not None else 0)
         self._scene = dataclasses.replace(self._scene, place=place, column_id=column_id)
         session = self._session

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from texlab_core.engine.inputs import Crop
 from texlab_core.engine.job import check_seed
+from texlab_core.engine.levels import Levels
 from texlab_core.engine.params import describe, frozen_mapping
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.sizes import size_from_json, size_to_json
 from texlab_core.errors import InputError
 from texlab_core.files.strict_json import check_keys, dumps, loads, shorten
+from texlab_core.images.unit_range import TRANSPARENCY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -128,16 +130,36 @@ class Fields:
 
 @dataclass(frozen=True)
 class Taken:
-    """A picture and the part of it that is used: ``gallery:NAME``, or a file beside the lesson or below it."""
+    """A picture and what is used of it.
+
+    Parameters
+    ----------
+    source
+        ``gallery:NAME``, or a file beside the lesson or below it.
+    crop, scale
+        Scaled first, then cropped.
+    levels
+        Of what is used; None changes nothing.
+    alpha
+        How transparency is read: a key of :data:`texlab_core.images.unit_range.TRANSPARENCY`.
+    """
 
     source: str
     crop: Crop | None = None
     scale: float = 1.0
+    levels: Levels | None = None
+    alpha: str = "white"
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether versions of the format before levels and transparency can say it."""
+        return self.levels is None and self.alpha == "white"
 
     @classmethod
     def from_json(cls, data: object) -> Self:
         """Read it; a text alone is the whole picture."""
-        fields = Fields({"source": data} if isinstance(data, str) else data, ("source", "crop", "scale"))
+        known = ("source", "crop", "scale", "levels", "alpha")
+        fields = Fields({"source": data} if isinstance(data, str) else data, known)
         source = fields.text("source", 300, needed=True)
         if source.startswith("gallery:"):
             from texlab_core.images.gallery import find_entry
@@ -145,17 +167,25 @@ class Taken:
             find_entry(source)
         else:
             _check_inside(source)
-        return cls(source, fields.part("crop", _crop), fields.number("scale", 1.0, 0.001, 1.0))
+        alpha = fields.data.get("alpha", "white")
+        if not isinstance(alpha, str) or alpha not in TRANSPARENCY:
+            raise LessonError(f"alpha: must be one of {', '.join(TRANSPARENCY)}, got {shorten(alpha)}.")
+        scale = fields.number("scale", 1.0, 0.001, 1.0)
+        return cls(source, fields.part("crop", _crop), scale, fields.part("levels", Levels.from_json), alpha)
 
     def to_json(self) -> dict[str, Any] | str:
         """Return it as JSON data."""
-        if self.crop is None and self.scale == 1:
+        if self.crop is None and self.scale == 1 and self.is_plain:
             return self.source
         data: dict[str, Any] = {"source": self.source}
         if self.crop is not None:
             sides = ("top", "left", "height", "width")
             data["crop"] = {side: getattr(self.crop, side) for side in sides}
-        return data if self.scale == 1 else {**data, "scale": self.scale}
+        if self.scale != 1:
+            data["scale"] = self.scale
+        if self.levels is not None:
+            data["levels"] = self.levels.to_json()
+        return data if self.alpha == "white" else {**data, "alpha": self.alpha}
 
 
 def _check_inside(source: str) -> None:

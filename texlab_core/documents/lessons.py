@@ -32,9 +32,10 @@ from texlab_core.files.whole import write_whole
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Iterator
 
 FORMAT = "texlab-lesson"
-VERSION = 1
+VERSION = 2
 PAPERS = {
     "forsyth-ponce": "Forsyth and Ponce, ch. 11",
     "heeger-bergen": "Heeger and Bergen 1995",
@@ -106,6 +107,15 @@ class LessonStep:
     view: Shown = field(default_factory=Shown)
     marks: tuple[tuple[int, int, int, int], ...] = ()
 
+    def pictures(self) -> Iterator[Taken]:
+        """Return every picture that it uses."""
+        if self.exemplar is not None:
+            yield self.exemplar
+        for column in self.columns:
+            yield from column.inputs.values()
+        if self.drawing is not None and self.drawing.other is not None:
+            yield self.drawing.other
+
     def to_json(self) -> dict[str, Any]:
         """Return it as JSON data; what is at its default is left out."""
         data: dict[str, Any] = {"sentence": self.sentence}
@@ -161,7 +171,9 @@ class Lesson:
 
     def to_json(self) -> dict[str, Any]:
         """Return it as JSON data."""
-        data: dict[str, Any] = {"format": FORMAT, "version": VERSION, "title": self.title, "chapter": self.chapter}
+        # Older programs read what they can show.
+        version = 1 if all(taken.is_plain for step in self.steps for taken in step.pictures()) else VERSION
+        data: dict[str, Any] = {"format": FORMAT, "version": version, "title": self.title, "chapter": self.chapter}
         data |= {"papers": list(self.papers), "summary": self.summary}
         return data | {"steps": [each.to_json() for each in self.steps]}
 

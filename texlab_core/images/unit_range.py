@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 
 Alpha = Literal["background", "ignore", "keep"]
 ALPHA: tuple[Alpha, ...] = ("background", "ignore", "keep")
+# What one may choose: the use, and the background over which transparent pixels are laid.
+TRANSPARENCY: dict[str, tuple[Alpha, float]] = {
+    "white": ("background", 1.0),
+    "black": ("background", 0.0),
+    "ignore": ("ignore", 1.0),
+    "keep": ("keep", 1.0),
+}
 _IGNORED = "The alpha channel was ignored."
 _KEPT = "The alpha channel was kept aside, and the colours used as they are."
 _LAID = "Transparent pixels were laid over "

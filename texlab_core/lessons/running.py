@@ -13,6 +13,7 @@ from texlab_core.engine.run import run
 from texlab_core.engine.sizes import default_size
 from texlab_core.errors import InputError
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.unit_range import TRANSPARENCY
 from texlab_core.lessons.drawing import Drawn, Scene, draw, kind_of
 
 if TYPE_CHECKING:
@@ -118,12 +119,23 @@ def _job(lesson: Lesson, step: LessonStep, column: StepColumn, exemplar: ImageIn
 
 def picture(lesson: Lesson, taken: Taken, *, reduced: bool = False) -> ImageInput:
     """Return a picture of a lesson."""
-    found = as_exemplar(lesson.locate(taken), crop=taken.crop, scale=taken.scale)
+    found = taken_from(read_picture(lesson, taken), taken)
     if not reduced or max(found.size) <= REDUCED_SIDE:
         return found
     crop = taken.crop or Crop(0, 0, *found.size)
     side = Crop(crop.top, crop.left, min(crop.height, REDUCED_SIDE), min(crop.width, REDUCED_SIDE))
-    return as_exemplar(found, crop=side, scale=taken.scale)
+    return as_exemplar(found, crop=side, scale=taken.scale, levels=taken.levels)
+
+
+def read_picture(lesson: Lesson, taken: Taken) -> ImageInput:
+    """Return all of a picture of a lesson, its transparency read as the lesson says."""
+    use, background = TRANSPARENCY[taken.alpha]
+    return as_exemplar(lesson.locate(taken), alpha=use, background=background)
+
+
+def taken_from(whole: ImageInput, taken: Taken) -> ImageInput:
+    """Return what is used of a picture that :func:`read_picture` has read."""
+    return as_exemplar(whole, crop=taken.crop, scale=taken.scale, levels=taken.levels)
 
 
 def run_step(
