@@ -123,7 +123,7 @@ def test_a_preset_is_the_base_of_settings(texlab: Texlab, ramp: Path) -> None:
         (["--set", "rounds=0"], "rounds: must be a whole number from 1 to 9, got 0"),
         (["--set", "round=1"], "did you mean rounds"),
         (["--set", "rounds"], "a name and a value"),
-        (["--size", "9"], "size: must be width and height"),
+        (["--size", "nine"], "size: must be width and height"),
         (["--size", "99999x99999"], "64 megapixels"),
         (["--seed", "-1"], "seed: must be a whole number from 0"),
         (["--seed", "x"], "seed: must be a whole number, got 'x'"),
@@ -227,6 +227,11 @@ def test_redo_says_when_the_image_was_changed(texlab: Texlab, ramp: Path) -> Non
 
 
 LARGE = np.random.Generator(np.random.PCG64(0)).random((900, 1000, 3), dtype=np.float32)
+
+
+def test_without_a_method_it_is_de_bonet(texlab: Texlab, ramp: Path) -> None:
+    assert texlab("synth", ramp, "--size", "16", "--out", "a.png").code == 0
+    assert read_recipe("a.png").method == "de-bonet"
 
 
 def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab) -> None:

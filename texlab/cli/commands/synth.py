@@ -45,7 +45,9 @@ WRITES = ".png"
 def configure(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("image", metavar="IMAGE|gallery:NAME", help="the exemplar, or a code X.msg.json")
-    parser.add_argument("--method", required=True, metavar="ID", help="one of texlab methods")
+    parser.add_argument(
+        "--method", default="de-bonet", metavar="ID", help="one of texlab methods (default de-bonet)"
+    )
     add_output_options(parser)
     parser.add_argument(
         "--size", metavar="WxH|WxHxD", help="of the result; one number for all sides (default: the exemplar's)"
