@@ -105,7 +105,8 @@ class LessonBar(QWidget):
         metrics = QFontMetrics(font)
         room = QRect(0, 0, self.width() - 2 * SIDE, FAR_DOWN)
         height = metrics.boundingRect(room, Qt.TextFlag.TextWordWrap, self.sentence.text()).height()
-        most = max(metrics.lineSpacing(), MOST_SHARE * self.window().height())
+        # One line may be large anywhere.
+        most = max(1.5 * metrics.lineSpacing(), MOST_SHARE * self.window().height())
         role = "sentence" if height <= most else "long-sentence"
         if role != self.sentence.property("role"):
             self.sentence.setProperty("role", role)
