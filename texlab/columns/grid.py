@@ -55,7 +55,7 @@ class Grid(QWidget):
         """
         if not self._cells:
             return
-        frames = {words: reduce(Frame.joined, (cell.frame_of(words) for cell in self._cells)) for words in WORDS}
+        frames = self._frames()
         made = arrange(len(self._cells), room, frames, self.aspect, self.rows)
         if made.total[1] > room[1] >= 0 and made.total[0] <= room[0]:
             made = arrange(len(self._cells), (room[0] - bar, room[1]), frames, self.aspect, self.rows)
@@ -65,6 +65,15 @@ class Grid(QWidget):
         for place, cell in enumerate(self._cells):
             cell.set_words(made.words)
             cell.setGeometry(*made.cell(place))
+
+    def least_height(self, width: int) -> int:
+        """Return the height below which the cells scroll in a room of this width, whatever room there is now."""
+        if not self._cells:
+            return 0
+        return arrange(len(self._cells), (width, 1), self._frames(), self.aspect, self.rows).total[1]
+
+    def _frames(self) -> dict[Words, Frame]:
+        return {words: reduce(Frame.joined, (cell.frame_of(words) for cell in self._cells)) for words in WORDS}
 
     def place_at(self, point: QPoint) -> int:
         """Return the place of the cell nearest to a point of the grid."""

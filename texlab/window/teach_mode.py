@@ -183,9 +183,8 @@ class TeachMode(QObject):
     def _height_beside_pictures(self) -> int:
         """Return what sentence and pictures leave of the window's height."""
         window = self._window
-        self._workspace.place()
         bar, menu = window.lesson_bar, window.menuBar()
-        taken = bar.minimumSizeHint().height() + self._workspace.grid.minimumHeight()
+        taken = bar.minimumSizeHint().height() + self._workspace.grid.least_height(window.width())
         return round((1 - SLACK) * window.height()) - taken - (menu.height() if menu.isVisible() else 0)
 
     def _set_zoom(self, zoom: float) -> None:
