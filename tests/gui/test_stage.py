@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
 import texlab
 from tests.gui.conftest import drag, hb, ids, wait_idle
 from texlab.columns.arrangement import LEAST_PICTURE, SPACING, Arrangement, Frame, arrange
-from texlab.columns.foot import Foot
+from texlab.columns.foot import MARGIN, Foot
 from texlab.columns.history_popup import HistoryPopup
 from texlab.columns.numbers_popup import NumbersPopup
 from texlab.columns.status import figures
@@ -424,11 +424,12 @@ def test_whole_figures_are_shown_in_any_width(qtbot: Any) -> None:
     numbers = {"discriminability": -3.5, "visual-difference": 0.5, "laid-down-share": 0.12}
     foot.show_scene(column_of(noise(8, 8), status="finished", measures=numbers))
     around.show()
-    counts = []
-    for width in (60, 130, 300, 700):
+    counts, room = [], foot.width_of("D -3.50") + 2 * MARGIN
+    # Where the name of the first has no room, its value stays.
+    for width, first in ((room - 1, "-3.50"), (room, "D -3.50"), (3 * room, "D -3.50"), (12 * room, "D -3.50")):
         foot.resize(width, foot.height())
         seen = [label for label in foot.figures if label.isVisible()]
-        assert seen[0].text() == "D -3.50"
+        assert seen[0].text() == first
         counts.append(len(seen))
         qtbot.waitUntil(lambda: _inside(foot))
     assert counts[0] == 1
