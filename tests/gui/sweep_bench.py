@@ -33,7 +33,8 @@ def make_bench(qtbot, monkeypatch):
         here = DockBench(qtbot, SweepsDock(), 900, 300, columns)
         made.append(here)
         here.begin()
-        qtbot.waitUntil(lambda: here.dock.start_button.isEnabled())
+        # The ready-made sweeps come from the dock's own worker.
+        qtbot.waitUntil(lambda: here.dock.start_button.isEnabled() and not here.host.busy)
         return here
 
     yield make
