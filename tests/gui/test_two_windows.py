@@ -107,6 +107,15 @@ def test_two_windows_have_two_sessions_and_both_come_back(
     again.window.close()
 
 
+def kept_and_cell() -> tuple[sessions.OwnSession, State]:
+    """Keep a session with a note, for the next window; return it, and a cell for another one."""
+    kept = sessions.claim()
+    write(kept, dataclasses.replace(state(1), notes="Mine."))
+    kept.release()
+    image = as_exemplar(np.zeros((16, 16, 3), np.float32), name="cell")
+    return kept, State(Sample(image), (Column(1, "pixels", methods()["pixels"].params()),), 3, (16, 16), 2)
+
+
 @pytest.mark.parametrize("kind", ["handed on", "project", "image"])
 def test_a_project_takes_no_session_away_that_is_kept(
     qtbot: Any,
@@ -118,12 +127,8 @@ def test_a_project_takes_no_session_away_that_is_kept(
     kind: str,
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    kept = sessions.claim()
-    write(kept, dataclasses.replace(state(1), notes="Mine."))
-    kept.release()
+    kept, cell = kept_and_cell()
     before = kept.path.read_bytes()
-    image = as_exemplar(np.zeros((16, 16, 3), np.float32), name="cell")
-    cell = State(Sample(image), (Column(1, "pixels", methods()["pixels"].params()),), 3, (16, 16), 2)
     source = str(texture) if kind == "image" else write_for_window(cell)
     if kind == "project":
         source = str(shutil.copy(source, tmp_path / "cell.texlab"))
@@ -150,12 +155,8 @@ def test_a_project_takes_no_session_away_that_is_kept(
 def test_a_damaged_project_loses_nothing(
     qtbot: Any, open_window: Callable[..., Explorer], texlab_home: Path, tmp_path: Path, cut: float
 ) -> None:
-    kept = sessions.claim()
-    write(kept, dataclasses.replace(state(1), notes="Mine."))
-    kept.release()
+    kept, cell = kept_and_cell()
     before = kept.path.read_bytes()
-    image = as_exemplar(np.zeros((16, 16, 3), np.float32), name="cell")
-    cell = State(Sample(image), (Column(1, "pixels", methods()["pixels"].params()),), 3, (16, 16), 2)
     project = tmp_path / "work.texlab"
     shutil.move(write_for_window(cell), project)
     whole = project.read_bytes()
