@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from texlab_core.engine.inputs import Input
+    from texlab_core.engine.registry import Method
 
 log = logging.getLogger(__name__)
 
@@ -36,6 +37,8 @@ OUTPUT = (32, 72)
 DEPTH = 8
 # Whoever waits asks this often whether to go on.
 PATIENCE_S = 0.01
+# What this process has in memory, whoever loaded it.
+_LOADED: dict[Need, Method] = {}
 
 
 class Need(NamedTuple):
@@ -69,6 +72,13 @@ def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
             run(job, should_stop=should_stop, threads=1)
         # Large planes are sorted in pieces, by kernels that no tiny run needs.
         histogram.warm_up()
+    _LOADED[need] = method
+
+
+def load_once(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
+    """Do as :func:`load` does, unless this process has loaded the same method before; raise what it raises."""
+    if _LOADED.get(need) is not find_method(need.method):
+        load(need, should_stop)
 
 
 def warm_up(should_stop: Callable[[], bool] | None = None) -> tuple[Need, ...]:
@@ -92,10 +102,10 @@ class Warmth:
     Parameters
     ----------
     load
-        ``load(need, should_stop)`` does the loading.
+        ``load(need, should_stop)`` does the loading; a second window of a process finds what the first has loaded.
     """
 
-    def __init__(self, load: Callable[[Need, Callable[[], bool]], None] = load) -> None:
+    def __init__(self, load: Callable[[Need, Callable[[], bool]], None] = load_once) -> None:
         self._load = load
         self._warm: set[Need] = set()
         # One entry for everybody who waits, the longest waiting first.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 import threading
@@ -10,14 +11,14 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from tests.stub_method import stub  # noqa: F401
+from tests.stub_method import know, stub  # noqa: F401
 from texlab_core import warming
 from texlab_core.engine.registry import methods
 from texlab_core.engine.run import run
 from texlab_core.errors import Cancelled, InputError
 from texlab_core.kernels import ranks
 from texlab_core.kernels.jit import stoppable_compiling
-from texlab_core.warming import Need, Warmth, every_need, load, warm_up
+from texlab_core.warming import Need, Warmth, every_need, load, load_once, warm_up
 
 PATIENCE_S = 60.0
 A, B, C = Need("a", 3), Need("b", 3), Need("c", 1)
@@ -27,11 +28,15 @@ def never() -> bool:
     return False
 
 
+def channels(job) -> int:
+    return job.inputs["exemplar"].channels
+
+
 def test_every_method_is_run_in_gray_and_in_colour(monkeypatch):
     seen = []
 
     def watched(job, **more):
-        seen.append((job.method, job.inputs["exemplar"].channels, job.params))
+        seen.append((job.method, channels(job), job.params))
         return run(job, **more)
 
     monkeypatch.setattr(warming, "run", watched)
@@ -257,6 +262,51 @@ def test_a_method_is_loaded_with_its_rehearsals(stub, monkeypatch):  # noqa: F81
         stub.params(),
         *(methods()["car"].params(synthesis=each) for each in ("spectrum", "recursion")),
     ]
+
+
+def test_what_the_process_has_in_memory_is_not_loaded_again(stub, monkeypatch):  # noqa: F811
+    seen = []
+    monkeypatch.setattr(warming, "_LOADED", {})
+    monkeypatch.setattr(warming, "run", lambda job, **_: seen.append((job.method, channels(job))))
+    for need in (Need("stub", 1), Need("stub", 3), Need("stub", 1), Need("stub", 3)):
+        load_once(need)
+    assert seen == [("stub", 1), ("stub", 3)]
+    # Whoever says so loads it all the same, and a method that takes another's name is another one.
+    load(Need("stub", 1))
+    assert len(seen) == 3
+    know(monkeypatch, {"stub": dataclasses.replace(stub, title="Another")})
+    load_once(Need("stub", 1))
+    assert len(seen) == 4
+
+
+def test_what_was_stopped_or_refused_is_not_in_memory(stub, monkeypatch):  # noqa: F811
+    tries = []
+
+    def refuse(job, **_):
+        tries.append(job.method)
+        raise (Cancelled, InputError("Too small."))[len(tries) % 2]
+
+    monkeypatch.setattr(warming, "_LOADED", {})
+    monkeypatch.setattr(warming, "run", refuse)
+    for error in (InputError, Cancelled):
+        with pytest.raises(error):
+            load_once(Need("stub", 3))
+    assert tries == ["stub", "stub"]
+
+
+def test_a_second_window_finds_what_the_first_has_loaded(stub, monkeypatch):  # noqa: F811
+    seen = []
+    monkeypatch.setattr(warming, "_LOADED", {})
+    monkeypatch.setattr(warming, "run", lambda job, **_: seen.append(job.method))
+    for _ in range(2):
+        warmth = Warmth()
+        thread = threading.Thread(target=warmth.serve)
+        thread.start()
+        warmth.wait(Need("stub", 3), never)
+        warmth.close()
+        thread.join(PATIENCE_S)
+        assert not thread.is_alive()
+    assert seen == ["stub"]
 
 
 def test_kernels_that_only_large_planes_need_are_loaded_too(monkeypatch):

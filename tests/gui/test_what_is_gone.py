@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 BIG = (41, 37)
 SIGNS = (set(BIG), {-(-each // 2) for each in BIG})
 SMALL = (20, 16)
+BATCH = 256
 METHODS = {
     "heeger-bergen": {"scales": 2, "iterations": 1},
     "de-bonet": {},
@@ -74,11 +75,17 @@ def finished(exemplar: Any, method: str, size: tuple[int, int], column_id: int =
 def of_old() -> list[str]:
     """Return where arrays of the large result are held."""
     gc.collect()
+    objects = gc.get_objects()
     found: dict[int, Any] = {}
-    for each in gc.get_objects():
-        for held in gc.get_referents(each):
-            if isinstance(held, np.ndarray) and any(sign <= set(held.shape) for sign in SIGNS):
-                found[id(held)] = (held.shape, held.dtype, describe(each))
+    for first in range(0, len(objects), BATCH):
+        batch = objects[first : first + BATCH]
+        # Most hold no array: a whole batch is asked at once, and only one that does is taken apart.
+        if not any(issubclass(kind, np.ndarray) for kind in set(map(type, gc.get_referents(*batch)))):
+            continue
+        for each in batch:
+            for held in gc.get_referents(each):
+                if isinstance(held, np.ndarray) and any(sign <= set(held.shape) for sign in SIGNS):
+                    found[id(held)] = (held.shape, held.dtype, describe(each))
     return [str(each) for each in found.values()]
 
 
