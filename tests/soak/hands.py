@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import shiboken6
-from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QContextMenuEvent, QGuiApplication, QWheelEvent
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QContextMenuEvent, QGuiApplication, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
@@ -44,6 +44,12 @@ RARE = {"action-run-all", "action-batch", "action-failures", "action-four", "act
 def is_there(address: int) -> bool:
     """Return whether a window of this address still exists: what Qt deletes by itself Python is not told."""
     return any(shiboken6.getCppPointer(each)[0] == address for each in QGuiApplication.allWindows())
+
+
+def letters(key: Qt.Key, held: Qt.KeyboardModifier) -> str:
+    """Return the text that a key writes, as a keyboard gives it."""
+    text = QTest.keyToAscii(key).strip("\0")
+    return text.upper() if held & Qt.KeyboardModifier.ShiftModifier else text
 
 
 class Hands:
@@ -156,19 +162,20 @@ class Hands:
         if handle is None:
             return
         address = shiboken6.getCppPointer(handle)[0]
-        # A menu that is about to go goes now: keys with others held are several events for one window.
+        text = letters(key, held)
+        strokes = [
+            *((True, name, held, "") for modifier, name in MODIFIERS if modifier & held),
+            (True, key, held, text),
+            (False, key, held, text),
+            *((False, name, NONE, "") for modifier, name in reversed(MODIFIERS) if modifier & held),
+        ]
+        # One event at a time, and none to a window that has gone: after each the program has a turn, and what it
+        # closes then is deleted. QTest.keyPress sends the modifiers too, and would not look in between.
         QApplication.processEvents()
-        for modifier, name in MODIFIERS:
-            if modifier & held and is_there(address):
-                QTest.keyPress(handle, name)
-                if is_there(address):
-                    QTest.keyRelease(handle, name)
-        if is_there(address):
-            QTest.keyPress(handle, key, held)
-        # What the key has closed goes before its release, which would be several events too.
-        QApplication.processEvents()
-        if is_there(address):
-            QTest.keyRelease(handle, key)
+        for down, each, modifiers, written in strokes:
+            if not is_there(address):
+                return
+            QTest.simulateEvent(handle, down, each.value, modifiers, written, False)
 
     # What hands do.
 
@@ -180,9 +187,19 @@ class Hands:
         self.press(front, BUTTONS.LeftButton, self.place(front))
 
     def double_click(self, front: QWidget) -> None:
+        at = self.place(front)
         handle = front.windowHandle()
-        if handle is not None:
-            QTest.mouseDClick(handle, BUTTONS.LeftButton, NONE, self.place(front))
+        if handle is None:
+            return
+        address = shiboken6.getCppPointer(handle)[0]
+        self.press(front, BUTTONS.LeftButton, at)
+        # Not QTest.mouseDClick: its four events would go to a window that the first of them has closed.
+        if is_there(address):
+            place, left = QPointF(at), BUTTONS.LeftButton
+            kind = QEvent.Type.MouseButtonDblClick
+            QApplication.sendEvent(handle, QMouseEvent(kind, place, handle.mapToGlobal(place), left, left, NONE))
+            if is_there(address):
+                QTest.mouseRelease(handle, left, NONE, at)
 
     def wheel(self, front: QWidget) -> None:
         at = self.place(front)

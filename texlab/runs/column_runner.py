@@ -178,6 +178,7 @@ class ColumnRunner(QObject):
         loading = Loading(self._shared.warmth, Need(method.id, exemplar.channels))
         rank = Rank.DRAFT if draft else Rank.CHANGED if alone else Rank.REST
         if own_draft:
+            self._run = None
             self.worker.submit(DraftRun(make_job), patient=patient, first=loading, rank=rank)
         else:
             self._run = ColumnRun(make_job, self._shared.cache, draft=draft)
@@ -258,9 +259,11 @@ class ColumnRunner(QObject):
         self.measurer.leave()
 
     def forget(self) -> None:
-        """Let go of the result, its frames and its picture: the column is shown no more."""
+        """Let go of the result, its run, and where it could go on: the column is shown no more."""
+        self._run = self._kept = self._exemplar = None
+        self.measurer.forget()
         gone = self.scene
-        self.scene = ColumnScene(gone.id, gone.method, gone.title, gone.params, inputs=gone.inputs)
+        self.scene = ColumnScene(gone.id, gone.method, gone.title, gone.params)
 
     def close(self) -> None:
         """Stop the thread and wait for its end."""
@@ -293,6 +296,9 @@ class ColumnRunner(QObject):
         self._show(**changes)
 
     def _finished(self, end: Finished | Drafted) -> None:
+        if not self.worker.behind:
+            # What it made is in the end that it came to.
+            self._run = None
         self._came(end)
         if self._known(end) is not None:
             # The same bits have the same numbers.

@@ -75,6 +75,10 @@ class Measurer(QObject):
         self.present = self._next = None
         self.worker.cancel()
 
+    def forget(self) -> None:
+        """Let go of the picture, of whose numbers nobody is told any more."""
+        self.present = self._next = None
+
     @property
     def ended(self) -> bool:
         """Whether the thread has ended."""

@@ -184,7 +184,7 @@ class Worker(QObject):
         """Ask the thread to end, without waiting; nothing is delivered any more."""
         with self._mail:
             self._closing = True
-            self._request = None
+            self._request = self._progress = None
             self._newest += 1
             self._oldest = self._newest
             self._mail.notify()
@@ -267,6 +267,8 @@ class Worker(QObject):
 
     def _post_progress(self, generation: int, value: object) -> None:
         with self._mail:
+            if self._closing:
+                return
             pending = self._progress is not None
             self._progress = (generation, value)
         if not pending:

@@ -26,7 +26,7 @@ def to_picture(image: FloatImage) -> Picture:
 def thinned(pixels: NDArray[Any], side: int) -> NDArray[Any]:
     """Return every n-th pixel, at most ``side`` x ``side``, as an array of its own."""
     step = max(1, -(-max(pixels.shape[:2]) // side))
-    return np.ascontiguousarray(pixels[::step, ::step])
+    return np.array(pixels[::step, ::step], order="C")
 
 
 def describe_value(image: FloatImage, row: int, column: int) -> str:
