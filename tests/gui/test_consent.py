@@ -42,7 +42,7 @@ def test_what_was_asked_for_covers_no_more_time_and_no_more_memory(
     expected = [Estimate(600.0, GIGABYTE)]
     monkeypatch.setattr("texlab.runs.consent._expected", lambda *_: expected[0])
     consent = Consent()
-    assert "F5 runs it" in consent.question(column, EXEMPLAR, (256, 256, 256))
+    assert "F5 runs it:" in consent.question(column, EXEMPLAR, (256, 256, 256))
     consent.give(column, EXEMPLAR, (256, 256, 256))
     expected[0] = Estimate(seconds, nbytes)
     assert (consent.question(column, EXEMPLAR, (256, 256, 256)) == "") is starts

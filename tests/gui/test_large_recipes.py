@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,9 +44,12 @@ def test_a_large_recipe_waits_for_the_user(
     qtbot.waitUntil(lambda: controller.column_scene(chosen).status == "idle")
     scene = controller.column_scene(chosen)
     assert scene.result is None
-    assert scene.message.startswith("70 x 60 needs about ")
-    assert scene.message.endswith("F5 runs it.")
-    qtbot.waitUntil(lambda: "F5 runs it." in explorer.workspace.columns[chosen].line.toolTip().replace("\n", " "))
+    assert re.fullmatch(r"F5 runs it: 70 x 60 needs about \d+ MB of memory( and \d+ s)?\.", scene.message)
+    line = explorer.workspace.columns[chosen].line
+    qtbot.waitUntil(lambda: scene.message in line.toolTip().replace("\n", " "))
+    # Without figures the sentence has their line, too.
+    assert line.text().startswith("F5 runs it: 70 x 60 needs about ")
+    assert line.height() >= 2 * line.fontMetrics().lineSpacing()
     explorer.window.actions_by_name["run"].trigger()
     qtbot.waitUntil(lambda: controller.column_scene(chosen).status == "finished")
     assert controller.column_scene(chosen).result.image.shape == (60, 70, 3)
@@ -89,8 +93,7 @@ def test_a_solid_that_takes_long_waits_until_it_is_asked_for(
     qtbot.waitUntil(lambda: seen() == ("idle", (12, 8, 8)))
     scene = controller.column_scene(column_id)
     assert scene.result is None
-    assert scene.message.startswith("8 x 8 x 12 needs about ")
-    assert scene.message.endswith("F5 runs it.")
+    assert scene.message.startswith("F5 runs it: 8 x 8 x 12 needs about ")
     explorer.window.actions_by_name["run"].trigger()
     qtbot.waitUntil(lambda: seen() == ("finished", (12, 8, 8)))
     # As much was asked for: another seed starts, more rounds wait again.
@@ -98,7 +101,7 @@ def test_a_solid_that_takes_long_waits_until_it_is_asked_for(
     qtbot.waitUntil(lambda: status() == "finished" and controller.column_scene(column_id).result.job.seed == 5)
     session.set_params(column_id, solid.params(iterations=2), "iterations")
     qtbot.waitUntil(lambda: status() == "idle")
-    assert controller.column_scene(column_id).message.endswith("F5 runs it.")
+    assert controller.column_scene(column_id).message.startswith("F5 runs it: ")
     # One step back there is a finished one, which takes nothing.
     session.undo()
     qtbot.waitUntil(lambda: status() == "finished")

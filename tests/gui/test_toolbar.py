@@ -8,12 +8,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QIcon, QImage
+from PySide6.QtGui import QAction, QIcon, QImage
 from PySide6.QtWidgets import QToolButton
 
 from texlab.style.icons import PALE, RATIOS, tool_icon
 from texlab.style.theme import DARK, LIGHT
-from texlab.window.toolbar import ICON_SIDE, SHORT
+from texlab.window.toolbar import ICON_SIDE, SHORT, ToolBar
 from texlab_core.files.resources import resource
 
 if TYPE_CHECKING:
@@ -103,3 +103,17 @@ def test_the_bar_has_groups_names_and_room(qtbot: Any, explorer: Explorer) -> No
     font.setPointSizeF(2 * font.pointSizeF())
     bar.setFont(font)
     assert bar.iconSize().width() > 1.5 * ICON_SIDE
+
+
+@pytest.mark.parametrize("size", [(8192, 4), (256, 10_000)])
+def test_sizes_that_a_file_asks_for_are_shown_as_they_are(qtbot: Any, size: tuple[int, int]) -> None:
+    names = (*SHORT, "layout-explore", "layout-teach", "layout-tune", "own-layouts")
+    bar = ToolBar({name: QAction(name) for name in names})
+    qtbot.addWidget(bar)
+    told: list[object] = []
+    for signal in (bar.size_turned, bar.seed_turned):
+        signal.connect(told.append)
+    bar.show_values(7, size)
+    assert not told
+    assert bar.size_shown == size
+    assert bar.height_box.text() == str(size[0])

@@ -42,7 +42,6 @@ class Foot(QWidget):
     def __init__(self, name: str, parent: QWidget | None = None, *, has_figures: bool = True) -> None:
         super().__init__(parent)
         self.setAccessibleName("About the picture")
-        self._has_figures = has_figures
         self._words: Words = "below"
         self._shown: tuple[Figure, ...] = ()
         self.before: Mapping[str, float] = {}
@@ -75,6 +74,7 @@ class Foot(QWidget):
             for label, figure in zip(self.figures, found, strict=False):
                 label.setText(figure.text)
                 set_tip(label, f"{figure.tip}\nClick: every number")
+            self.line.set_lines(self._lines)
             self._fit()
         self.line.show_parts(status_parts(scene), details(scene))
 
@@ -104,7 +104,8 @@ class Foot(QWidget):
     def _lines(self) -> int:
         if self._words == "beside":
             return LINES_BESIDE
-        return 2 if self._words == "below" and not self._has_figures else 1
+        # A sentence has the line of the figures too, where there are none.
+        return 2 if self._words == "below" and not self._shown else 1
 
     @property
     def _gap(self) -> int:

@@ -71,7 +71,8 @@ class Consent:
         asked = self._asked.get(column.id)
         if not self._from_file and asked is not None and asked.covers(expected):
             return ""
-        return f"{size_text(tuple(size))} needs {in_words(expected)}; F5 runs it."
+        # What to press comes first: a narrow cell leaves out the end.
+        return f"F5 runs it: {size_text(tuple(size))} needs {in_words(expected)}."
 
 
 def _expected(column: Column, exemplar: ImageInput, size: Sequence[int]) -> Estimate | None:

@@ -129,6 +129,8 @@ class ToolBar(QToolBar):
         """Show seed and size (height, width) without telling anyone."""
         for box, value in ((self.seed_box, seed), (self.height_box, size[0]), (self.width_box, size[1])):
             with QSignalBlocker(box):
+                # A file may ask for more than what is typed here.
+                box.setRange(min(box.minimum(), value), max(box.maximum(), value))
                 box.setValue(value)
 
 
