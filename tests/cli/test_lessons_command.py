@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from texlab.cli.main import main
+from texlab.storage.paths import config_dir
 from texlab_core.lessons.shelf import find
 
 if TYPE_CHECKING:
@@ -48,6 +49,31 @@ def test_lessons_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lessons", "--json"]) == 0
     found = {each["name"]: each for each in json.loads(capsys.readouterr().out)}
     assert len(found["heeger-bergen"]["steps"]) == 13
+
+
+def test_your_own_lessons_are_listed_by_their_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("TEXLAB_HOME", str(tmp_path))
+    folder = config_dir() / "lessons"
+    folder.mkdir(parents=True)
+    # Called as one of the program's.
+    mine = folder / "heeger-bergen.json"
+    mine.write_text(json.dumps(SMALL))
+    (folder / "broken.json").write_text("{")
+    assert main(["lessons"]) == 0
+    said = capsys.readouterr()
+    assert f"{mine}  -" in said.out
+    assert "Small, 1 steps" not in said.out
+    assert "Small, 1 step (no paper)" in said.out
+    assert len(said.err.splitlines()) == 1
+    assert "broken.json" in said.err
+    assert main(["lessons", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    (found,) = (each for each in listed if each["own"])
+    assert (found["name"], found["lesson"]) == ("heeger-bergen", str(mine))
+    assert main(["lesson", found["lesson"]]) == 0
+    assert "Small, 1 step\n" in capsys.readouterr().out
 
 
 def test_figures_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

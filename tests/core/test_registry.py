@@ -15,6 +15,7 @@ import texlab_core.methods
 from tests.core.toy import noise_method, stock
 from texlab_core.engine import plugins, registry
 from texlab_core.errors import ParamError
+from texlab_core.measures import registry as measuring
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,7 @@ def test_methods_come_in_their_order(empty: None) -> None:
 def test_a_second_method_with_the_same_id_is_a_programming_error(empty: None) -> None:
     method = registry.register(noise_method())
     assert registry.find_method(method.id) is method
-    with pytest.raises(RuntimeError, match="toy-noise"):
+    with pytest.raises(RuntimeError, match=r"^A method with the id 'toy-noise' is registered already\.$"):
         registry.register(noise_method())
 
 
@@ -88,6 +89,12 @@ from tests.core.toy import noise_method, stock
 from texlab_core.engine.registry import register
 register(noise_method(id="good-noise", title="Good noise"))
 """
+MEASURE = """
+from texlab_core.measures.registry import Measure
+from texlab_core.measures.registry import register as add
+words = dict(title="beside", summary="Only here.", better="lower", needs=(), form=".1f")
+add(Measure(id='beside', low=0.0, high=1.0, function=lambda subject: 0.5, **words))
+"""
 
 
 def test_a_method_of_another_package_is_found_and_named_with_it(packages: Callable[..., None]) -> None:
@@ -97,6 +104,28 @@ def test_a_method_of_another_package_is_found_and_named_with_it(packages: Callab
     assert method.package == "texlab-good"
     assert method.title == "Good noise (texlab-good)"
     assert registry.failures() == ()
+
+
+def test_what_is_registered_already_is_told_with_its_package(packages: Callable[..., None]) -> None:
+    packages("texlab-first", GOOD)
+    packages("texlab-second", GOOD)
+    assert registry.find_method("good-noise").package == "texlab-first"
+    (failure,) = registry.failures()
+    assert failure.source.package == "texlab-second"
+    assert "A method with the id 'good-noise' is registered already, by texlab-first" in failure.reason
+
+
+def test_a_measure_beside_a_method_is_of_the_same_package(
+    packages: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stock(monkeypatch, measuring._MEASURES)
+    packages("texlab-good", GOOD + MEASURE)
+    packages("texlab-taken", MEASURE.replace("'beside'", "'cuts'"), "texlab_core.measures")
+    assert measuring.find_measure("beside").package == "texlab-good"
+    with pytest.raises(RuntimeError, match="'beside' is registered already, by texlab-good"):
+        measuring.register(measuring.find_measure("beside"))
+    with pytest.raises(RuntimeError, match="A measure with the id 'cuts' is registered already, by texlab"):
+        measuring.register(measuring.find_measure("cuts"))
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import html
 import json
 import os
 import subprocess
@@ -12,8 +14,11 @@ from typing import Any
 import pytest
 
 from texlab.style.letters import ensure_letters
+from texlab_core.sheets.typeface import typeface
 
 ROOT = Path(__file__).resolve().parents[2]
+CODE = ("texlab", "texlab_core")
+WRITTEN = {".md", ".json", ".toml", ".tsv", ".txt"}
 EMPTY = '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig></fontconfig>'
 # Letters as pixels, before and after: without a font each is the same box.
 DRAWN = """
@@ -44,8 +49,9 @@ def drawn(letter, bold):
     return bytes(picture.constBits()).hex()
 
 
-shown = [drawn(letter, bold) for bold in (False, True) for letter in "mWe\\u03b1\\u2013"]
-print(json.dumps([QFontInfo(made.font()).family(), len(set(shown))]))
+signs = "mWe\\u03b1\\u2013\\u21b6\\u2605\\u283f"
+shown = [len({drawn(letter, bold) for letter in signs}) for bold in (False, True)]
+print(json.dumps([QFontInfo(made.font()).family(), *shown]))
 """
 
 
@@ -67,9 +73,34 @@ def look(which: str, folder: Path) -> Any:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Fonts are found by fontconfig")
 def test_where_the_system_has_no_font_text_has_letters(tmp_path: Path) -> None:
-    assert look("plain", tmp_path) == ["", 1], "the oracle: without a font, every letter is the same box"
-    assert look("ours", tmp_path) == ["DejaVu Sans", 10]
+    assert look("plain", tmp_path) == ["", 1, 1], "the oracle: without a font, every letter is the same box"
+    assert look("ours", tmp_path) == ["DejaVu Sans", 8, 8]
 
 
 def test_where_the_system_has_fonts_they_are_taken(qapp: Any) -> None:
     assert not ensure_letters()
+
+
+def literals(source: str) -> str:
+    """Return all texts that a module may show, one after the other."""
+    nodes = ast.walk(ast.parse(source))
+    return "".join(node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str))
+
+
+def foreign(text: str) -> set[str]:
+    """Return what one of our typefaces has no sign for; entities of rich text count as what they stand for."""
+    faces = typeface("regular"), typeface("bold")
+    signs = {each for each in html.unescape(text) if each.isprintable()}
+    return {each for each in signs if any(ord(each) not in face.glyphs for face in faces)}
+
+
+def test_what_has_no_sign_is_found() -> None:
+    assert foreign(literals('x = f"\\u00d7 {1} \U0001f600", "&#x1f601;", b"\\xff"')) == {"\U0001f600", "\U0001f601"}
+
+
+def test_the_programs_own_typeface_has_every_sign_of_its_texts() -> None:
+    texts = {path: literals(path.read_text("utf-8")) for name in CODE for path in (ROOT / name).rglob("*.py")}
+    written = (path for path in (ROOT / "resources").rglob("*") if path.suffix in WRITTEN)
+    texts |= {path: path.read_text("utf-8") for path in written}
+    assert len(texts) > 300
+    assert {str(path): lacking for path, text in texts.items() if (lacking := foreign(text))} == {}

@@ -16,6 +16,7 @@ import importlib.metadata
 import logging
 import pkgutil
 import threading
+from contextvars import ContextVar
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 OWN_PACKAGE = "texlab"
+# Whose module is being imported; empty when none is.
+_IMPORTED: ContextVar[str] = ContextVar("texlab_imported", default="")
 
 
 class Entry(Protocol):
@@ -129,6 +132,7 @@ def load(
         None when all went well.
     """
     before = dict(shelf)
+    token = _IMPORTED.set(source.package)
     try:
         importlib.import_module(source.module)
         for name in [name for name in shelf if name not in before]:
@@ -141,6 +145,8 @@ def load(
         failure = Failure(source, what, reason)
         log.info("%s", failure.sentence, exc_info=error)
         return failure
+    finally:
+        _IMPORTED.reset(token)
     return None
 
 
@@ -173,6 +179,7 @@ class Shelf(Generic[EntryT]):
         self._accept = accept
         self._warn = warn
         self._entries: dict[str, EntryT] = {}
+        self._owners: dict[str, str] = {}
         # None until the modules were imported.
         self._failures: tuple[Failure, ...] | None = None
         self._ordered: Mapping[str, EntryT] | None = None
@@ -180,11 +187,18 @@ class Shelf(Generic[EntryT]):
         self._lock = threading.RLock()
 
     def add(self, entry: EntryT) -> EntryT:
-        """Add an entry; a second one with the same id is a programming error."""
+        """Add an entry; a second one with the same id is a programming error, which names who has the first."""
         # Without the lock: whoever imports the module holds the lock of the import, for which the shelf may wait.
+        package = _IMPORTED.get()
         if entry.id in self._entries:
-            raise RuntimeError(f"A {type(entry).__name__.lower()} with the id {entry.id!r} is registered already.")
+            owner = self._owners.get(entry.id)
+            whose = f", by {owner}" if owner else ""
+            raise RuntimeError(f"A {self._kind} with the id {entry.id!r} is registered already{whose}.")
+        if self._accept is not None and not self._filling and package not in {"", OWN_PACKAGE}:
+            # What declares a method may declare its measures too.
+            entry = self._accept(entry, package)
         self._entries[entry.id] = entry
+        self._owners[entry.id] = package
         self._ordered = None
         return entry
 

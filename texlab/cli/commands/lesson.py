@@ -20,7 +20,7 @@ ORDER = 33
 
 def configure(parser: Parser) -> None:
     """Add the arguments."""
-    parser.epilog = "texlab lessons lists the names; a lesson file is JSON, see texlab lesson NAME --json"
+    parser.epilog = "texlab lessons lists the names and your own files; a lesson file is JSON, see texlab lesson NAME --json"
     parser.add_argument("lesson", metavar="FILE.json|NAME", help="a file, or a lesson that comes with the program")
     parser.add_argument("--check", action="store_true", help="run every step")
     parser.add_argument("--export", metavar="DIR", help="write index.html and its pictures into a folder")
@@ -37,7 +37,7 @@ def execute(args: argparse.Namespace) -> int:
     lesson = find(args.lesson)
     check_lesson(lesson)
     answer: dict[str, Any] = {"title": lesson.title, "steps": len(lesson.steps)}
-    lines = [f"{lesson.title}, {len(lesson.steps)} steps"]
+    lines = [f"{lesson.title}, {len(lesson.steps)} step{'s' if len(lesson.steps) > 1 else ''}"]
     if folder is not None:
         from texlab_core.lessons.page import export
 

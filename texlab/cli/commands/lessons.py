@@ -1,4 +1,4 @@
-"""``texlab lessons``: the lessons that come with the program, by chapter."""
+"""``texlab lessons``: the lessons that come with the program, by chapter, and your own."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
     from texlab.cli.parser import Parser
 
-HELP = "List the lessons that come with the program, by chapter and paper."
+HELP = "List the lessons that come with the program, by chapter and paper, and your own."
 ORDER = 32
 
 
@@ -19,30 +19,43 @@ def configure(parser: Parser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print the list."""
-    from texlab_core.documents.lessons import PAPERS
-    from texlab_core.lessons.shelf import bundled
+    """Print the list; what stands among your own and cannot be used is told on standard error."""
+    import sys
 
-    lessons = bundled()
+    from texlab.storage.paths import config_dir
+    from texlab_core.documents.lessons import PAPERS
+    from texlab_core.lessons.shelf import bundled, own
+
+    folder = config_dir() / "lessons"
+    yours, problems = own(folder)
+    lessons = [(name, name, each) for name, each in bundled().items()]
+    # By its file: one of the program's may have the same name.
+    lessons += [(name, str(folder / f"{name}.json"), each) for name, each in yours.items()]
     if args.json:
         import json
 
         found = [
             {
                 "name": name,
+                "lesson": called,
+                "own": called != name,
                 "title": each.title,
                 "chapter": each.chapter,
                 "papers": list(each.papers),
                 "summary": each.summary,
                 "steps": [step.sentence for step in each.steps],
             }
-            for name, each in lessons.items()
+            for name, called, each in lessons
         ]
         print(json.dumps(found, indent=2))
-        return 0
-    width = max(map(len, lessons), default=0)
-    wide = max((len(each.chapter) for each in lessons.values()), default=0)
-    for name, each in lessons.items():
-        about = "; ".join(PAPERS[paper] for paper in each.papers)
-        print(f"{name:{width}}  {each.chapter or '-':{wide}}  {each.title}, {len(each.steps)} steps ({about})")
+    else:
+        listed = bundled()
+        width = max(map(len, listed), default=0)
+        wide = max((len(each.chapter) for each in listed.values()), default=0)
+        for _, called, each in lessons:
+            about = "; ".join(PAPERS[paper] for paper in each.papers) or "no paper"
+            steps = f"{len(each.steps)} step{'s' if len(each.steps) > 1 else ''}"
+            print(f"{called:{width}}  {each.chapter or '-':{wide}}  {each.title}, {steps} ({about})")
+    for problem in problems:
+        print(problem, file=sys.stderr)
     return 0
