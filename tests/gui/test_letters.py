@@ -95,7 +95,8 @@ def foreign(text: str) -> set[str]:
 
 
 def test_what_has_no_sign_is_found() -> None:
-    assert foreign(literals('x = f"\\u00d7 {1} \U0001f600", "&#x1f601;", b"\\xff"')) == {"\U0001f600", "\U0001f601"}
+    code = 'x = f"\\u00d7 {1} \U0001f600", "&#x1f601;", b"\\xff"'
+    assert foreign(literals(code)) == {"\U0001f600", "\U0001f601"}
 
 
 def test_the_programs_own_typeface_has_every_sign_of_its_texts() -> None:

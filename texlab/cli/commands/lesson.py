@@ -20,7 +20,9 @@ ORDER = 33
 
 def configure(parser: Parser) -> None:
     """Add the arguments."""
-    parser.epilog = "texlab lessons lists the names and your own files; a lesson file is JSON, see texlab lesson NAME --json"
+    parser.epilog = (
+        "texlab lessons lists the names and your own files; a lesson file is JSON, see texlab lesson NAME --json"
+    )
     parser.add_argument("lesson", metavar="FILE.json|NAME", help="a file, or a lesson that comes with the program")
     parser.add_argument("--check", action="store_true", help="run every step")
     parser.add_argument("--export", metavar="DIR", help="write index.html and its pictures into a folder")
