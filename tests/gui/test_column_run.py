@@ -1,6 +1,7 @@
-"""One run of a column, without its worker: what is measured after it, and that it can be stopped there."""
+"""One run of a column, without its worker: its pictures, what is measured after it, and that it can be stopped."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,10 +9,12 @@ import pytest
 from tests.gui.dock_scenes import column_of
 from texlab.columns.status import details, figures, numbers_of, status_parts
 from texlab.docks.findings.words import nothing_to_list
+from texlab.runs import column_run
 from texlab.runs.column_run import SOLID, ColumnRun, Measured, MeasureRun
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.job import Job
 from texlab_core.engine.run import run
+from texlab_core.engine.steps import Step
 from texlab_core.errors import Cancelled
 from texlab_core.findings.registry import Detector, find_all
 from texlab_core.images.exemplar import as_exemplar
@@ -59,6 +62,38 @@ def test_a_run_can_be_stopped_at_every_question():
         with pytest.raises(Cancelled):
             ColumnRun(job, AnalysisCache())(task)
         assert task.asked == stop_at
+
+
+@pytest.mark.parametrize(("step_s", "picture_s"), [(0.02, 0.001), (0.1, 1.0), (0.05, 20.0)])
+def test_pictures_on_the_way_take_a_share_of_the_time_and_reports_none(monkeypatch, step_s, picture_s):
+    count, clock, drawn = 4000, [0.0], []
+
+    def preview():
+        clock[0] += picture_s
+        drawn.append(clock[0])
+        return np.zeros((4, 4, 3), np.float32)
+
+    def steps(made, watch, *_, **__):
+        for done in range(count):
+            clock[0] += step_s
+            watch(Step(done, count, "round", preview=preview, phase="synthesis"))
+        return run(made)
+
+    monkeypatch.setattr(column_run, "run", steps)
+    monkeypatch.setattr(column_run, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    task = Task()
+    task.due = lambda: True
+    ColumnRun(job, AnalysisCache())(task)
+    assert [each.fraction for each in task.reports] == [done / count for done in range(count)]
+    assert sum(each.picture is not None for each in task.reports) == len(drawn)
+    assert drawn[0] == pytest.approx(step_s + picture_s)
+    share = column_run.PICTURES_SHARE
+    if picture_s / (picture_s + step_s) <= share:
+        assert len(drawn) == count
+    else:
+        assert len(drawn) > 1
+        assert (len(drawn) - 1) * picture_s <= share * clock[0]
+        assert len(drawn) * (picture_s + step_s) >= share * clock[0] / 2
 
 
 def test_a_result_is_measured_quickly_then_wholly():

@@ -9,7 +9,9 @@ helps it.
 from __future__ import annotations
 
 import argparse
+import faulthandler
 import os
+import signal
 import sys
 import tempfile
 import time
@@ -45,6 +47,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--set", nargs="*", default=["iterations=1"], help="parameters of the method, name=value")
     parser.add_argument("--growth", type=float, default=0.15, help="share that may stay")
     options = parser.parse_args(arguments)
+    if hasattr(signal, "SIGUSR1"):
+        faulthandler.register(signal.SIGUSR1)
     with tempfile.TemporaryDirectory(prefix="texlab-large-") as home:
         os.environ["TEXLAB_HOME"] = os.environ["HOME"] = home
         os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
@@ -80,8 +84,9 @@ def _run(options: Any) -> int:
     explorer.session.set_column_size(column.id, (options.size, options.size))
     rest(explorer)
     weigh(explorer, f"{options.size} x {options.size}")
-    look(explorer)
+    look(explorer, told=True)
     most = weigh(explorer, "every tab looked")
+    print(f"{'the most at any time':20} RSS {peak_bytes() / 2**20:7.1f} MB", flush=True)
     explorer.session.remove_column(column.id)
     after = weigh(explorer, "closed")
     window.close()
@@ -106,27 +111,46 @@ def rest(explorer: Explorer, least_s: float = 0.2) -> None:
         time.sleep(0.005)
 
 
-def look(explorer: Explorer) -> None:
-    """Show every tab, and every page of the laboratory."""
+def look(explorer: Explorer, *, told: bool = False) -> None:
+    """Show every tab, and every page of the laboratory; ``told`` prints which of them take a second or more."""
     from texlab.docks.lab.dock import LabDock
+
+    def until_rest(what: str) -> None:
+        since = time.process_time()
+        rest(explorer)
+        took = time.process_time() - since
+        if told and took >= 1:
+            print(f"    {what}: {took:.1f} s, RSS {(memory_bytes() or 0) / 2**20:.0f} MB", flush=True)
 
     for name, host in explorer.hosts.items():
         explorer.window.raise_dock(name)
-        rest(explorer)
+        until_rest(name)
         if isinstance(host.dock, LabDock):
             for page in (*range(host.dock.bar.count()), 0):
                 host.dock.bar.setCurrentIndex(page)
-                rest(explorer)
+                until_rest(f"{name}, {host.dock.bar.tabText(page)}")
+
+
+def peak_bytes() -> int:
+    """Return the largest resident size so far, where the system tells it."""
+    try:
+        import resource
+    except ImportError:
+        return 0
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else most * 1024
 
 
 def weigh(explorer: Explorer, what: str) -> int:
     """Wait until the program has given back what it does not need; print and return its resident size."""
+    since = time.process_time()
     rest(explorer, REST_S)
+    took = time.process_time() - since
     resident = memory_bytes() or 0
     kept = explorer.controller.shared.kept.nbytes
     print(
         f"{what:20} RSS {resident / 2**20:7.1f} MB, malloc has given out {malloc_in_use() / 2**20:7.1f}, "
-        f"kept results {kept / 2**20:6.1f}",
+        f"kept results {kept / 2**20:6.1f}, {took:.0f} s of processor time",
         flush=True,
     )
     return resident

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     Keep = Callable[[], Mapping[str, Any]]
 
 MAX_FRAME_BYTES = 96 * 2**20
+# Pictures on the way take at most this share of a run: one of a large result takes longer than a step of its making.
+PICTURES_SHARE = 0.25
 SOLID = "A solid is not examined: findings are about pictures. A slice can be exported and examined."
 BROKEN = "The result could not be examined; the log says why."
 
@@ -159,19 +161,24 @@ class ColumnRun:
         """Run to the end, reporting on the way."""
         start = time.perf_counter()
         kept = 0
-        away = 0.0
+        away = next_picture = 0.0
         metrics: dict[str, float] = {}
 
         def watch(step: Step) -> None:
-            nonlocal kept, away
+            nonlocal kept, away, next_picture
             away += task.give_way()
             metrics.update(step.metrics)
             self.state = step.state
             due = not self.draft and task.due()
             keep = step.frame is not None and not self.draft and kept < MAX_FRAME_BYTES
-            image = step.preview() if step.preview is not None and (due or keep) else None
+            before = time.perf_counter()
+            shown = due and before >= next_picture
+            image = step.preview() if step.preview is not None and (shown or keep) else None
             picture = to_picture(image) if image is not None else None
             filled = step.filled() if step.filled is not None and image is not None else None
+            if image is not None:
+                after = time.perf_counter()
+                next_picture = after + (after - before) * (1 / PICTURES_SHARE - 1)
             if keep and picture is not None and step.frame is not None:
                 kept += picture.nbytes
                 self.frames.append(Frame(step.frame, picture))
