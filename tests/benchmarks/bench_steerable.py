@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.clock import cpu, fourier_pair
-from texlab_core.transforms import filters, steerable
+from texlab_core.transforms import steerable
+from texlab_core.work.kept import ARRAYS
 
 pytestmark = pytest.mark.benchmark
 
@@ -41,7 +42,7 @@ def test_filters_and_orientations() -> None:
             steerable.collapse(steerable.build(plane, 4, count))
 
         def cold(count: int = orientations) -> None:
-            filters._CACHE.clear()
+            ARRAYS.clear()
             steerable.collapse(steerable.build(plane, 4, count))
 
         kept, made = cpu(warm) / unit, cpu(cold) / unit

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from texlab_core.transforms import filters, steerable
+from texlab_core.work.kept import ARRAYS, ArrayCache
 from texlab_core.work.tasks import finish
 from texlab_core.work.threads import use_workers
 
@@ -189,7 +190,7 @@ def test_filters_are_read_only_and_the_cache_is_bounded():
     mask = finish(filters.highpass((16, 16), np.dtype(np.float32)))
     assert mask is finish(filters.highpass((16, 16), np.dtype(np.float32)))
     assert not mask.flags.writeable
-    cache = filters.ArrayCache(1000)
+    cache = ArrayCache(1000)
     made = [finish(cache.get((number,), partial(made_of, 50, 0))) for number in range(5)]
     assert cache.nbytes == 800
     assert finish(cache.get((4,), partial(made_of, 50, 1))) is made[4]
@@ -202,7 +203,7 @@ def test_filters_are_read_only_and_the_cache_is_bounded():
 
 def test_forgotten_filters_are_made_again():
     mask = finish(filters.highpass((16, 16), np.dtype(np.float32)))
-    filters._CACHE.clear()
+    ARRAYS.clear()
     again = finish(filters.highpass((16, 16), np.dtype(np.float32)))
     assert again is not mask
     np.testing.assert_array_equal(again, mask)

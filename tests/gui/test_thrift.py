@@ -13,7 +13,7 @@ import pytest
 from texlab.app import memory
 from texlab.app.malloc import HEAPS
 from texlab.app.memory import STEP_BYTES, Thrift, give_back, memory_bytes
-from texlab_core.transforms import filters
+from texlab_core.work import kept
 from texlab_core.work.tasks import finish
 
 
@@ -87,8 +87,8 @@ def test_where_the_size_is_not_known_nothing_is_done(qapp: Any) -> None:
 
 
 def test_large_filters_are_let_go_of_the_oldest_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    cache = filters.ArrayCache(10**9)
-    monkeypatch.setattr(filters, "_CACHE", cache)
+    cache = kept.ArrayCache(10**9)
+    monkeypatch.setattr(kept, "ARRAYS", cache)
     monkeypatch.setattr(memory, "FILTERS_BYTES", 1000)
 
     def make(count: int) -> Any:

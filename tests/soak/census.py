@@ -21,7 +21,7 @@ import texlab
 import texlab_core
 from texlab.app.memory import memory_bytes
 from texlab.docks.recent import Recent
-from texlab_core.transforms.filters import shrink
+from texlab_core.work.kept import shrink
 
 if TYPE_CHECKING:
     from texlab.app.explorer import Explorer

@@ -32,7 +32,7 @@ def memory_text(size: int | None) -> str:
 
 def give_back() -> None:
     """Let go of large filters, and give the system what was freed, which glibc keeps in pieces."""
-    from texlab_core.transforms.filters import shrink
+    from texlab_core.work.kept import shrink
 
     shrink(FILTERS_BYTES)
     trim()

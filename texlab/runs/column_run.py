@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Keep = Callable[[], Mapping[str, Any]]
 
 MAX_FRAME_BYTES = 96 * 2**20
-# Pictures on the way take at most this share of a run: one of a large result takes longer than a step of its making.
+# Pictures on the way take at most this share of a run: one of a large result takes longer than a step of the work.
 PICTURES_SHARE = 0.25
 SOLID = "A solid is not examined: findings are about pictures. A slice can be exported and examined."
 BROKEN = "The result could not be examined; the log says why."

@@ -6,7 +6,6 @@ degrees from 0 to 180; stripes run at right angles to it, so that 90 degrees are
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 
 from texlab_core.transforms import fourier
 from texlab_core.transforms.luma import luma
+from texlab_core.work.kept import kept
 from texlab_core.work.tasks import finish, go_on, row_blocks
 from texlab_core.work.threads import workers
 
@@ -215,13 +215,12 @@ def _cells(spectrum: Spectrum, cells_v: int, cells_u: int) -> tuple[Floats, NDAr
     return np.divide(total, count, out=np.zeros_like(total), where=filled), filled
 
 
-@functools.lru_cache(maxsize=16)
+@kept
 def _triangles(count: int, cells: int) -> Floats:
     """Return (cells, count) weights of FFT frequencies in cells centred at k / cells, overlapping by half."""
     distance = np.fft.fftfreq(count)[None, :] - np.arange(cells)[:, None] / cells
     distance -= np.round(distance)
     weights: Floats = np.maximum(1 - np.abs(distance) * cells, 0)
-    weights.flags.writeable = False
     return weights
 
 

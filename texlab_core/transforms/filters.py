@@ -11,13 +11,12 @@ Reference: Heeger and Bergen 1995, section 2.1, figure 1; Simoncelli and Freeman
 from __future__ import annotations
 
 import math
-import threading
-from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from texlab_core.work.kept import ARRAYS
 from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
@@ -39,64 +38,13 @@ def spectrum_size(size: Size) -> Size:
     return size[0], size[1] // 2 + 1
 
 
-class ArrayCache:
-    """Read-only arrays by key, the most recently used ones, bounded in bytes; safe to share between threads."""
-
-    def __init__(self, capacity: int) -> None:
-        self._capacity = capacity
-        self._arrays: OrderedDict[tuple[object, ...], Mask] = OrderedDict()
-        self._lock = threading.Lock()
-        self._bytes = 0
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held at the moment."""
-        return self._bytes
-
-    def get(self, key: tuple[object, ...], make: Callable[[], Task[Mask]]) -> Task[Mask]:
-        """Return the array of this key, made piece by piece when it is not there."""
-        with self._lock:
-            if key in self._arrays:
-                self._arrays.move_to_end(key)
-                return self._arrays[key]
-        # Made outside the lock: two threads may do the same work, but none waits for another's.
-        made = yield from make()
-        made.flags.writeable = False
-        with self._lock:
-            kept = self._arrays.setdefault(key, made)
-            self._bytes += made.nbytes if kept is made else 0
-            while self._bytes > self._capacity and len(self._arrays) > 1:
-                self._bytes -= self._arrays.popitem(last=False)[1].nbytes
-        return kept
-
-    def shrink(self, nbytes: int) -> None:
-        """Drop the arrays that were not used for longest until the others take no more than this."""
-        with self._lock:
-            while self._bytes > nbytes:
-                self._bytes -= self._arrays.popitem(last=False)[1].nbytes
-
-    def clear(self) -> None:
-        """Drop all arrays."""
-        with self._lock:
-            self._arrays.clear()
-            self._bytes = 0
-
-
-_CACHE = ArrayCache(256 * 2**20)
-
-
-def shrink(nbytes: int) -> None:
-    """Let go of responses, which are made again when they are needed, until they take no more than this."""
-    _CACHE.shrink(nbytes)
-
-
 def highpass(size: Size, dtype: np.dtype[Any]) -> Task[Mask]:
     """Return the response of the high-pass residual on the half spectrum of an image of this size."""
 
     def response(radius: Mask, mask: Mask, *_: Mask) -> None:
         mask[:] = _rise(radius, math.pi)
 
-    return _CACHE.get(("highpass", size, dtype.str), lambda: _fill(size, size, dtype, (), response))
+    return ARRAYS.get(("highpass", size, dtype.str), lambda: _fill(size, size, dtype, (), response))
 
 
 def lowpass(size: Size, levels: int, dtype: np.dtype[Any]) -> Task[Mask]:
@@ -106,7 +54,7 @@ def lowpass(size: Size, levels: int, dtype: np.dtype[Any]) -> Task[Mask]:
     def response(radius: Mask, mask: Mask, *_: Mask) -> None:
         mask[:] = _fall(radius, math.pi / 2**levels)
 
-    return _CACHE.get(("lowpass", size, levels, dtype.str), lambda: _fill(size, crop, dtype, (), response))
+    return ARRAYS.get(("lowpass", size, levels, dtype.str), lambda: _fill(size, crop, dtype, (), response))
 
 
 def oriented(size: Size, level: int, orientations: int, dtype: np.dtype[Any]) -> Task[Mask]:
@@ -125,7 +73,7 @@ def oriented(size: Size, level: int, orientations: int, dtype: np.dtype[Any]) ->
             mask[:] = radial * _power(cosine, power)
 
     key = ("oriented", size, level, orientations, dtype.str)
-    return _CACHE.get(key, lambda: _fill(size, crop, dtype, (orientations,), response))
+    return ARRAYS.get(key, lambda: _fill(size, crop, dtype, (orientations,), response))
 
 
 def _fill(

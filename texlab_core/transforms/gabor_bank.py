@@ -5,12 +5,13 @@ Reference: Navarro & Portilla 1996, section 2.1, eqs. 1 and 2.
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from texlab_core.work.kept import kept
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -84,24 +85,23 @@ MIRRORED_V = _OCTAVE + np.tile([2, 1, 0, 1], OCTAVES)
 _REACH = 2.35
 
 
-@functools.lru_cache(maxsize=32)
+@kept
 def distinct_profiles(count: int) -> tuple[Floats, NDArray[np.int64]]:
     """Return the (20, count) distinct profiles on an axis in FFT order, and from which index their octave ends.
 
     Both are read-only. From ``end`` to ``count - end`` all profiles of the same octave are negligible.
     """
-    profiles = _frozen(power_profile(frequencies(count), PROFILE_CENTRES, PROFILE_WIDTHS))
+    profiles = power_profile(frequencies(count), PROFILE_CENTRES, PROFILE_WIDTHS)
     highest = np.repeat(CENTRE_FREQUENCIES, len(_PLACES))
     ends = np.ceil((highest + _REACH * PROFILE_WIDTHS) * count).astype(np.int64) + 1
-    ends.flags.writeable = False
     return profiles, ends
 
 
-@functools.lru_cache(maxsize=32)
+@kept
 def channel_profiles(count: int, vertical: bool) -> Floats:
     """Return the (16, count) factors of the squared filters along one axis, in FFT order, read-only."""
     centres = CENTRES_V if vertical else CENTRES_U
-    return _frozen(power_profile(frequencies(count), centres, WIDTHS))
+    return power_profile(frequencies(count), centres, WIDTHS)
 
 
 def mirrored(profile: Floats) -> Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from texlab_core.transforms import fourier
+from texlab_core.work.kept import kept
 from texlab_core.work.tasks import finish
 
 if TYPE_CHECKING:
@@ -86,6 +86,6 @@ def _filters(size: tuple[int, int], octave: int) -> Iterator[NDArray[np.float32]
         yield (radial * np.maximum(cosine, 0) ** 3).astype(np.float32)
 
 
-@functools.lru_cache(maxsize=24)
+@kept
 def _kept_filters(size: tuple[int, int], octave: int) -> tuple[NDArray[np.float32], ...]:
     return tuple(_filters(size, octave))

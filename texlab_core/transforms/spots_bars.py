@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from texlab_core.errors import ParamError
+from texlab_core.work.kept import kept
 from texlab_core.work.tasks import go_on
 from texlab_core.work.threads import workers
 
@@ -49,7 +50,7 @@ def kernels() -> NDArray[np.float64]:
     return bank
 
 
-@functools.lru_cache(maxsize=16)
+@kept
 def scaled_kernels(scale: float) -> NDArray[np.float64]:
     """Return the filters with all lengths times a scale, (8, n, n) float64, n odd, read-only.
 
@@ -73,7 +74,6 @@ def scaled_kernels(scale: float) -> NDArray[np.float64]:
     # What is left of the sum by rounding would answer to a constant.
     bank -= bank.mean(axis=(1, 2), keepdims=True)
     bank *= 2 / np.abs(bank).sum(axis=(1, 2), keepdims=True)
-    bank.flags.writeable = False
     return bank
 
 
@@ -140,21 +140,21 @@ def scaled_responses(
     look()
     spectrum = fft.rfft2(padded, s=size, workers=workers())
     found = np.empty((FILTERS, height, width), np.float32)
-    for number, gains in enumerate(_spectra(scale, size)):
+    for number in range(FILTERS):
         look()
+        gains = _spectrum(number, scale, size)
         whole = fft.irfft2(spectrum * gains, s=size, overwrite_x=True, workers=workers())
         found[number] = whole[2 * reach : 2 * reach + height, 2 * reach : 2 * reach + width]
     return found
 
 
-@functools.lru_cache(maxsize=4)
-def _spectra(scale: float, size: tuple[int, int]) -> NDArray[np.complex64]:
+@kept
+def _spectrum(number: int, scale: float, size: tuple[int, int]) -> NDArray[np.complex64]:
     from scipy import fft
 
     # Convolution: the kernels point the same way as the image, as everywhere here (they are symmetric).
-    spectra = np.asarray(fft.rfft2(scaled_kernels(scale).astype(np.float32), s=size), np.complex64)
-    spectra.flags.writeable = False
-    return spectra
+    kernel = scaled_kernels(scale)[number].astype(np.float32)
+    return np.asarray(fft.rfft2(kernel, s=size), np.complex64)
 
 
 def _mirrored(plane: NDArray[np.float32], reach: int) -> NDArray[np.float32]:

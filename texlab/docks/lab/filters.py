@@ -36,7 +36,7 @@ class FiltersAnswer:
     details: tuple[tuple[Shown, Shown], ...]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=spots_bars.FILTERS)
 def filter_pictures(number: int, scale: float) -> tuple[Shown, Shown]:
     """Return kernel and footprint of a filter."""
     kernel = spots_bars.scaled_kernels(scale)[number]
