@@ -19,6 +19,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from texlab.widgets.plain import FittedLabel
+
 if TYPE_CHECKING:
     from PySide6.QtGui import QPaintEngineState, QTextItem
 
@@ -173,17 +175,22 @@ def cut(window: QWidget, texts: list[Painted]) -> list[str]:
     for each in texts:
         room = room_of(each.widget, window)
         inside = room.adjusted(-1, -1, 1, 1).contains(each.place)
-        # Whole words before the sign, and all of them in the tip: what there is room for, and where the rest is.
-        told = each.words.endswith(" …") and each.words.removesuffix(" …").split(" · ")[0] in each.widget.toolTip()
-        if "…" in each.words and not told:
+        if "…" in each.words and not told(each):
             found.append(f"left out: {each.name}")
         elif not inside and room.intersects(each.place):
             found.append(f"outside: {each.name}, {each.place} of {room}")
     for label in window.findChildren(QLabel):
-        seen = label.isVisible() and not label.visibleRegion().isEmpty()
+        seen = label.isVisible() and not label.visibleRegion().isEmpty() and not isinstance(label, FittedLabel)
         if seen and label.wordWrap() and lines_of(label) > label.height() + 1:
             found.append(f"lines left out: {label.objectName()} {label.text()!r}")
     return found
+
+
+def told(each: Painted) -> bool:
+    """Return whether whole words stand before the sign, or a part of a single one, and all of them in the tip."""
+    shown, tip = each.words.removesuffix("…"), " ".join(each.widget.toolTip().split())
+    whole = shown.endswith(" ") or (shown and " " not in shown)
+    return bool(whole) and "…" not in shown and shown.split(" · ")[0].strip() in tip
 
 
 def lines_of(label: QLabel) -> int:

@@ -11,6 +11,7 @@ import pytest
 from dock_scenes import check_controls, click, column_of, feed, hover, image_input, noise, scene_of, shown
 from mouse import drag
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QColor
 
 from texlab.docks.dependence.dock import DependenceDock
 from texlab.docks.dependence.joint_view import shares
@@ -283,7 +284,7 @@ def test_a_strong_cell_is_painted_strongly(hand: Hand, theme: Any) -> None:
         strength = shares(view.found, conditional=shape == "conditional")
         places = [np.unravel_index(int(each), strength.shape) for each in (strength.argmin(), strength.argmax())]
         weak, strong = (picture.pixelColor(view.cell_rect(*map(int, each)).center().toPoint()) for each in places)
-        background = picture.pixelColor(view.width() - 2, 2).lightness()
+        background = QColor(theme.window).lightness()
         assert abs(strong.lightness() - background) > abs(weak.lightness() - background) + 60
     assert hand.dock.curves.isEnabled()
     before = hand.joint(0).grab().toImage()

@@ -247,7 +247,9 @@ class ExemplarView(Cell):
         self.more.setVisible(not (is_teaching() and needed > self.width()))
         self.head.activate()
         room = self.title.width()
-        self.title.setText(metrics.elidedText(self._name, Qt.TextElideMode.ElideMiddle, room))
+        # From afar the beginning of a name says more than its end; the tip has all of it.
+        side = Qt.TextElideMode.ElideRight if is_teaching() else Qt.TextElideMode.ElideMiddle
+        self.title.setText(metrics.elidedText(self._name, side, room))
 
     def _make_box(self) -> Any:
         """Make the crop box, once: it comes and goes with every crop."""

@@ -89,6 +89,10 @@ class Dock(OwnKeys, QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Repaint in another theme."""
 
+    def least_height(self, width: int) -> int:
+        """Return the height in pixels, at a width, below which something that it shows has to be scrolled."""
+        return self.minimumSizeHint().height()
+
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to what is shown, or show the controls again; not every dock can."""
 

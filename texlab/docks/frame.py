@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import QPoint, QRect, QSize, Qt
+from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -35,6 +35,8 @@ from texlab.widgets.scroll_room import ScrollRoom
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from PySide6.QtGui import QResizeEvent
 
     from texlab.state.scene import ColumnScene, Frame, Scene
     from texlab.style.theme import Theme
@@ -157,7 +159,7 @@ class FramedDock(Dock):
         self._stale_soon = Once(self, STALE_MS, lambda: self._mark_stale(True))
         self._message = Label(self.empty, name=f"{self.name}-message", muted=True, wraps=True)
         self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        pages = QWidget(self)
+        self._pages = pages = QWidget(self)
         self._stack = QStackedLayout(pages)
         self._stack.addWidget(self._message)
         self._room = ScrollRoom(self.body, f"{self.name}-room")
@@ -169,6 +171,7 @@ class FramedDock(Dock):
         self._told = Label(" ")
         self._told.setMargin(2 * MARGIN)
         self._told.hide()
+        self._folded = False
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
@@ -282,9 +285,35 @@ class FramedDock(Dock):
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to the body, or show the controls again."""
-        folded = folded and self.folds
-        self._fold.setVisible(not folded)
-        self._told.setVisible(folded and self._readout is not None)
+        self._folded = folded and self.folds
+        self._fold.setVisible(not self._folded)
+        self._make_line()
+
+    def _make_line(self) -> None:
+        """Keep a line for values free where what is shown does not need it; else they are told over its edge."""
+        room = self.height() - self._told.sizeHint().height()
+        spare = self._folded and self._readout is not None and room >= self.least_height(self.width())
+        self._told.setVisible(spare)
+
+    def least_height(self, width: int) -> int:
+        """Return the height below which the body has to be scrolled, without the line for values."""
+        return self._room.needed(width).height() + (0 if self._folded else self._fold.sizeHint().height())
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the least size, without the line for values: nobody makes room for it."""
+        needed = super().minimumSizeHint()
+        return needed - QSize(0, 0 if self._told.isHidden() else self._told.sizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Tell values where there is room for them."""
+        super().resizeEvent(event)
+        self._make_line()
+
+    def event(self, event: QEvent) -> bool:
+        """Tell values where there is room for them when the body asks for other room."""
+        if event.type() == QEvent.Type.LayoutRequest and self._folded:
+            self._make_line()
+        return super().event(event)
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""
@@ -358,7 +387,8 @@ class FramedDock(Dock):
         return self._readout
 
     def _readout_room(self) -> QRect:
-        part = self._told if self._told.isVisible() else self.controls
+        spare = self._pages if self._folded else self.controls
+        part = self._told if self._told.isVisible() else spare
         return QRect(part.mapTo(self, QPoint()), part.size())
 
 

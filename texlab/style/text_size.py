@@ -98,6 +98,21 @@ def whole_words(text: str, metrics: QFontMetrics, room: float) -> str:
     return metrics.elidedText(" ".join(words).rstrip(","), Qt.TextElideMode.ElideRight, int(room))
 
 
+def shortened(text: str, metrics: QFontMetrics, room: float) -> str:
+    """Return a text that fits, with a sign where something is left out: whole words when it is read from afar."""
+    if not is_teaching() or metrics.horizontalAdvance(text) <= room:
+        return metrics.elidedText(text, Qt.TextElideMode.ElideRight, int(room))
+    # Nobody in the back row can do anything with half a word.
+    fit = whole_words(text, metrics, room - metrics.horizontalAdvance(f" {MORE}"))
+    return fit if fit.endswith(MORE) else f"{fit} {MORE}"
+
+
+def tight_line(metrics: QFontMetrics) -> int:
+    """Return the least height of a line of numbers and plain words: no accents stand above its capitals."""
+    box = metrics.tightBoundingRect("bdk0g")
+    return box.height() + 1
+
+
 def text_scale(widget: QWidget) -> float:
     """Return how many times as high as usual a widget's text is, at least 1: its sizes in pixels grow with it."""
     return max(1.0, float(QFontMetricsF(widget.font()).height()) / USUAL_LINE)

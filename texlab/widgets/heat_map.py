@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import ink_on, paint
-from texlab.style.text_size import is_teaching
+from texlab.style.text_size import is_teaching, tight_line
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.tables import add_copying
 
@@ -130,7 +130,7 @@ class HeatMap(OwnKeys, QWidget):
         words = [*self._columns, *(text for row in self._texts for text in row)]
         width = max((metrics.horizontalAdvance(each) for each in words), default=0) + PADDING
         rows, columns = self._places.shape
-        needed = QSize(math.ceil(left + columns * width), math.ceil(top + rows * (metrics.height() + 1)))
+        needed = QSize(math.ceil(left + columns * width), math.ceil(top + rows * (tight_line(metrics) + 1)))
         if needed != self._needed:
             self._needed = needed
             self.updateGeometry()
@@ -175,7 +175,7 @@ class HeatMap(OwnKeys, QWidget):
         painter.fillRect(area, QColor(red, green, blue))
         words = self._texts[row][column]
         metrics = self.fontMetrics()
-        if metrics.horizontalAdvance(words) <= area.width() and metrics.height() <= area.height() + 4:
+        if metrics.horizontalAdvance(words) <= area.width() and tight_line(metrics) <= area.height() + 1:
             painter.setPen(QColor(ink_on(red, green, blue)))
             painter.drawText(area, Qt.AlignmentFlag.AlignCenter, words)
 
@@ -230,6 +230,6 @@ class HeatMap(OwnKeys, QWidget):
         """Return left and top of the first cell, width and height of each."""
         metrics = self.fontMetrics()
         left = max((metrics.horizontalAdvance(name) for name in self._rows), default=0) + 10.0
-        top = metrics.height() + 2.0 if any(self._columns) else 2.0
+        top = (tight_line(metrics) if is_teaching() else metrics.height()) + 2.0 if any(self._columns) else 2.0
         rows, columns = (max(1, side) for side in self._places.shape)
         return left, top, max(4.0, (self.width() - left) / columns), max(4.0, (self.height() - top) / rows)

@@ -11,19 +11,23 @@ import textwrap
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QMargins, Qt
+from PySide6.QtCore import QMargins, QRect, QSize, Qt
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QLabel, QMessageBox, QSizePolicy, QToolTip, QTreeWidgetItem, QWidget
 
+from texlab.style.text_size import MORE, is_teaching, shortened
+
 if TYPE_CHECKING:
     from PySide6.QtCore import QPoint
-    from PySide6.QtGui import QAction, QPaintEvent
+    from PySide6.QtGui import QAction, QPaintEvent, QResizeEvent
     from PySide6.QtWidgets import QListWidgetItem, QTableWidgetItem
 
 # Characters in a line of a tooltip.
 TIP_WIDTH = 60
 # Of what came from outside, no more than anybody would read.
 LONGEST_TIP = 4000
+FAR_DOWN = 100_000
+WRAPPED = Qt.TextFlag.TextWordWrap.value
 
 
 class Label(QLabel):
@@ -77,7 +81,7 @@ class ShortLabel(Label):
     def shown_text(self) -> str:
         """Return what is painted, with the ellipsis."""
         room = self.contentsRect().width() - 2 * self.margin()
-        return self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+        return shortened(self.text(), self.fontMetrics(), room)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint what there is room for."""
@@ -86,13 +90,57 @@ class ShortLabel(Label):
         self.style().drawItemText(
             painter,
             inside,
-            int(self.alignment()),
+            int(self.alignment()) | (WRAPPED if self.wordWrap() else 0),
             self.palette(),
             self.isEnabled(),
             self.shown_text(),
             self.foregroundRole(),
         )
         painter.end()
+
+
+class FittedLabel(ShortLabel):
+    """Words in as many lines as there is room for, two at least; then an ellipsis, and the tip has all of them."""
+
+    def __init__(self, text: str = "", parent: QWidget | None = None, *, name: str = "") -> None:
+        super().__init__(text, parent, name=name)
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+
+    def hasHeightForWidth(self) -> bool:
+        """Return False: Qt gives what has one all of it, however little is left for the rest."""
+        return False
+
+    def sizeHint(self) -> QSize:
+        """Return the room of all lines in the width that there is."""
+        return QSize(super().sizeHint().width(), self.heightForWidth(max(self.width(), 1)))
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the room of two lines where text is large, else that of all."""
+        least, lines = super().minimumSizeHint().width(), self.sizeHint().height()
+        return QSize(least, min(lines, 2 * self.fontMetrics().lineSpacing()) if is_teaching() else lines)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Ask for other room in another width."""
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self.updateGeometry()
+
+    def shown_text(self) -> str:
+        """Return what is painted, with the ellipsis."""
+        words = self.text().split(" ")
+        if self._fits(self.text()) or len(words) < 2:
+            return self.text()
+        few, many = 1, len(words)
+        while many - few > 1:
+            middle = (few + many) // 2
+            few, many = (middle, many) if self._fits(f"{' '.join(words[:middle])} {MORE}") else (few, middle)
+        return f"{' '.join(words[:few]).rstrip(',;:')} {MORE}"
+
+    def _fits(self, text: str) -> bool:
+        inside = self.contentsRect()
+        room = QRect(0, 0, max(inside.width(), 1), FAR_DOWN)
+        return self.fontMetrics().boundingRect(room, WRAPPED, text).height() <= inside.height()
 
 
 class MarkupLabel(QLabel):

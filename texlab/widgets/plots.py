@@ -380,7 +380,7 @@ class ColourBar(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         """Return the width of the hint."""
-        return QSize(self.sizeHint().width(), 40)
+        return QSize(self.sizeHint().width(), max(40, 2 * self.fontMetrics().height() + 4))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the bar."""

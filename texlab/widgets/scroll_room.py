@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtWidgets import QBoxLayout, QFrame, QScrollArea, QSizePolicy, QStyle
 
 from texlab.style.text_size import is_teaching
-from texlab.widgets.plain import Label, MarkupLabel
+from texlab.widgets.plain import Label, MarkupLabel, ShortLabel
 
 if TYPE_CHECKING:
     from PySide6.QtGui import QResizeEvent
@@ -63,20 +63,28 @@ class ScrollRoom(QScrollArea):
         if not is_teaching():
             inner.resize(room)
             return
-        needed = inner.minimumSizeHint().expandedTo(inner.minimumSize())
         bar = self.style().pixelMetric(QStyle.PixelMetric.PM_ScrollBarExtent)
-        down = needed.height() > room.height()
-        across = needed.width() > room.width() - bar * down
-        down = down or needed.height() > room.height() - bar * across
-        room -= QSize(bar * down, bar * across)
+        needed = self.needed(room.width())
+        across = needed.width() > room.width()
+        if needed.height() > room.height() - bar * across:
+            room -= QSize(bar, 0)
+            # Narrower words take more lines.
+            needed = self.needed(room.width())
+            across = needed.width() > room.width()
+        room -= QSize(0, bar * across)
+        inner.resize(needed.expandedTo(room))
+
+    def needed(self, width: int) -> QSize:
+        """Return what is needed inside so that nothing scrolls in a room of this width; it may be wider."""
+        inner = self.widget()
+        if inner is None:
+            return QSize()
+        needed = inner.minimumSizeHint().expandedTo(inner.minimumSize())
         layout = inner.layout()
         if layout is not None and layout.hasHeightForWidth():
             # Words take more lines than the least that they say they need.
-            lines = least_height(layout, max(needed.width(), room.width() - bar * (not down)))
-            needed = needed.expandedTo(QSize(0, lines))
-        if needed.height() > room.height() and not down:
-            room -= QSize(bar, 0)
-        inner.resize(needed.expandedTo(room))
+            needed = needed.expandedTo(QSize(0, least_height(layout, max(needed.width(), width))))
+        return needed
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Ask for other room when what is inside does."""
@@ -99,7 +107,8 @@ def least_height(item: QLayoutItem, width: int) -> int:
         inner = widget.layout()
         if inner is not None and inner.hasHeightForWidth():
             return max(least, least_height(inner, width))
-        return max(least, item.heightForWidth(width) if isinstance(widget, Label | MarkupLabel) else 0)
+        has_lines = isinstance(widget, Label | MarkupLabel) and not isinstance(widget, ShortLabel)
+        return max(least, item.heightForWidth(width) if has_lines else 0)
     if not isinstance(item, QBoxLayout):
         return least
     margins = item.contentsMargins()

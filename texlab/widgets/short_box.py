@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSizePolicy
 
-from texlab.style.text_size import MORE, is_teaching, whole_words
+from texlab.style.text_size import shortened
 from texlab.widgets.calm_wheel import ChoiceBox
 
 if TYPE_CHECKING:
-    from PySide6.QtGui import QFontMetrics
     from PySide6.QtWidgets import QWidget
 
 
@@ -51,12 +49,3 @@ class ShortBox(ChoiceBox):
         )
         self.view().setMinimumWidth(widest + 32)
         super().showPopup()
-
-
-def shortened(text: str, metrics: QFontMetrics, room: float) -> str:
-    """Return a text that fits, with a sign where something is left out: whole words when it is read from afar."""
-    if not is_teaching() or metrics.horizontalAdvance(text) <= room:
-        return metrics.elidedText(text, Qt.TextElideMode.ElideRight, int(room))
-    # Nobody in the back row can do anything with half a word.
-    fit = whole_words(text, metrics, room - metrics.horizontalAdvance(f" {MORE}"))
-    return fit if fit.endswith(MORE) else f"{fit} {MORE}"

@@ -63,6 +63,8 @@ class Layouts:
         """Called before every change of the layout."""
         self.changed: Callable[[], None] = lambda: None
         """Called after it."""
+        self.resized: Callable[[], None] = lambda: None
+        """Called when text has followed the height of the window."""
 
     def arrange(self, layout: str, tuning: str = "histograms") -> None:
         """Arrange the panels: ``explore``, ``teach`` or ``tune``; ``tuning`` is the tab in front for the last.
@@ -109,6 +111,7 @@ class Layouts:
         self.set_text_size()
         if self.current == "teach" and self._strip.is_open:
             self.share_height(self._share)
+        self.resized()
 
     def share_height(self, share: float) -> None:
         """Give the open tab this share of the window's height."""

@@ -5,11 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeySequence
 
+from texlab.columns.arrangement import LEAST_PICTURE
 from texlab.state.lesson_scene import NO_LESSON
 from texlab.style.text_size import next_zoom
+from texlab.widgets.once import Once
 from texlab.window.chalk import Chalk
 from texlab.window.layouts import HEIGHTS, SIDES
 from texlab.window.lesson_desk import tab_of
@@ -34,8 +36,12 @@ NOTES_FACTOR = 1.2
 LETTERS = 18
 # The exemplar stands beside a column where there is room for so many pictures.
 LEAST_BESIDE = 2
-# The part of the height for seams, and for what a tab says only when its answer has come.
-SLACK = 0.05
+# Pixels for seams and borders.
+SLACK = 12
+# Pictures stand beside a tab where their sides are at least this part of the window's height.
+PICTURE = 0.2
+# In Teach the window may be smaller than its parts would like: they give way, and it never grows by itself.
+LEAST = 320, 240
 # Tabs that show the exemplar too, and the part of the height for a tab beside the exemplar alone.
 SHOW_ALL = ("lab", "lessons")
 SHARE_WITHOUT_COLUMNS = 0.6
@@ -64,9 +70,15 @@ class TeachMode(QObject):
         self._lesson = NO_LESSON
         self._folded = True
         self._share = HEIGHTS["teach"]
+        # Whether the step's tab stands alone, and its share of the height; and whether both are to be found anew.
+        self._given = False, 0.0
+        self._is_new = self._by_hand = False
+        self._settling = Once(self, 0, self._settle_room)
+        window.installEventFilter(self)
         self._was_full = self._was_on = False
         layouts, actions = window.layouts, window.actions_by_name
         layouts.leaving, layouts.changed = self._close_overlays, self.show_layout
+        layouts.resized = self._follow_size
         actions["text-larger"].setShortcuts([QKeySequence("Ctrl++"), QKeySequence("Ctrl+=")])
         for name, call in (
             ("text-larger", lambda: self._set_zoom(next_zoom(layouts.zoom, 1))),
@@ -85,6 +97,7 @@ class TeachMode(QObject):
             actions[name].triggered.connect(lambda _=False, call=call: call())
         actions["full-screen"].triggered.connect(self.set_full_screen)
         actions["tab-alone"].toggled.connect(self.set_tab_alone)
+        actions["tab-alone"].triggered.connect(self._take_over)
         actions["notes"].triggered.connect(self.notes.set_open)
         actions["ink"].toggled.connect(self.chalk.set_drawing)
         actions["halo"].toggled.connect(self.chalk.set_halo)
@@ -111,6 +124,7 @@ class TeachMode(QObject):
     def show_layout(self) -> None:
         """Show only what belongs to the layout."""
         window = self._window
+        window.setMinimumSize(*(LEAST if self.on else (0, 0)))
         window.toolbar.setVisible(not self.on)
         window.statusBar().setVisible(not self.on)
         self._workspace.exemplar.set_quiet(self.on)
@@ -156,6 +170,7 @@ class TeachMode(QObject):
         self._show_columns()
 
     def _make_room(self, step: LessonStep) -> None:
+        """Give tab and pictures of a step their room, as if nothing had been given before."""
         columns = [column.id for column in self._session.state.columns]
         self._hidden.clear()
         # Beside larger words pictures would be small: there are fewer of them.
@@ -165,33 +180,80 @@ class TeachMode(QObject):
         if columns and room < LEAST_BESIDE:
             # A picture that has to be scrolled into sight is not seen; the exemplar is one key away.
             self._hidden.add(EXEMPLAR)
+        self._show_columns()
+        self._by_hand = False
+        self._give_room(*self._room_of(step))
+        # What has just got another size or another text says what it needs a moment later.
+        self._is_new = True
+        self._settling.start()
+
+    def _room_of(self, step: LessonStep) -> tuple[bool, float]:
+        """Return whether the tab of a step stands alone, and its share of the window's height."""
+        columns, height = self._session.state.columns, self._window.height()
         # Experiments and drawings show the exemplar themselves, where there is one.
-        alone = not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL)
-        share = HEIGHTS["teach"] if columns else SHARE_WITHOUT_COLUMNS
-        if not alone:
-            self._show_columns()
-            left = self._height_beside_pictures()
-            tab = self._window.docks.get(tab_of(step))
-            # Where large words leave no room for both, the tab comes first: the pictures are one key away.
-            alone = tab is not None and tab.minimumSizeHint().height() > left
-            share = min(share, left / self._window.height())
+        if not columns and (step.exemplar is None or tab_of(step) in SHOW_ALL):
+            return True, 1.0
+        left, needed = self._height_beside_pictures(), self._height_of(tab_of(step))
+        # Where large words leave no room for both, the tab comes first: the pictures are one key away.
+        if needed > left:
+            return True, 1.0
+        usual = HEIGHTS["teach"] if columns else SHARE_WITHOUT_COLUMNS
+        return False, max(min(usual, left / height), needed / height)
+
+    def _give_room(self, alone: bool, share: float) -> None:
+        self._given = alone, share
         self._window.actions_by_name["tab-alone"].setChecked(alone)
         # The sentence has other lines than the one before.
         self._window.settle_middle()
-        self._window.layouts.share_height(1.0 if alone else share)
+        self._window.layouts.share_height(share)
+
+    def _settle_room(self) -> None:
+        """Give a tab that needs more by now its room; what is given stays, or room would go back and forth."""
+        step = self._lesson.step
+        if not self.on or step is None or self._by_hand or self._window.front_dock() != tab_of(step):
+            return
+        wanted = self._room_of(step)
+        if not self._is_new:
+            wanted = wanted[0] or self._given[0], max(wanted[1], self._given[1])
+        self._is_new = False
+        if wanted != self._given:
+            self._give_room(*wanted)
+
+    def _take_over(self) -> None:
+        """Leave room to the user, who has asked for another one."""
+        self._by_hand = True
+
+    def _follow_size(self) -> None:
+        """Give a step its room in a window of another size."""
+        if self.on and self._lesson.step is not None and not self._by_hand:
+            self._make_room(self._lesson.step)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Look again when a part of the window asks for other room: answers come late."""
+        if event.type() == QEvent.Type.LayoutRequest and self.on and self._lesson.step is not None:
+            self._settling.start()
+        return False
 
     def _height_beside_pictures(self) -> int:
         """Return what sentence and pictures leave of the window's height."""
         window = self._window
         bar, menu = window.lesson_bar, window.menuBar()
-        taken = bar.minimumSizeHint().height() + self._workspace.grid.least_height(window.width())
-        return round((1 - SLACK) * window.height()) - taken - (menu.height() if menu.isVisible() else 0)
+        more = max(0, round(PICTURE * window.height()) - LEAST_PICTURE)
+        taken = bar.minimumSizeHint().height() + self._workspace.grid.least_height(window.width()) + more
+        return window.height() - SLACK - taken - (menu.height() if menu.isVisible() else 0)
+
+    def _height_of(self, name: str) -> int:
+        """Return the height of a tab with its title, below which it scrolls."""
+        frame, host = self._window.docks.get(name), self._hosts.get(name)
+        if frame is None or host is None or not host.is_made:
+            return 0
+        title = frame.minimumSizeHint().height() - host.dock.minimumSizeHint().height()
+        return max(title, 0) + host.dock.least_height(self._window.width())
 
     def _set_zoom(self, zoom: float) -> None:
         self._window.layouts.set_zoom(zoom)
         if self.on and self._lesson.step is not None:
             self._make_room(self._lesson.step)
-            self._show_columns()
 
     # Columns.
 

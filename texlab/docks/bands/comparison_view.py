@@ -10,14 +10,16 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QSizePolicy, QTableWidget, QTableWidgetItem
 
 from texlab.style.numbers import number
+from texlab.style.text_size import is_teaching, tight_line
 from texlab.widgets.plain import set_tip
 from texlab.widgets.plots import Plot
-from texlab.widgets.tables import make_quiet
+from texlab.widgets.tables import ROW_MARGIN, make_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
+    from PySide6.QtGui import QResizeEvent
     from PySide6.QtWidgets import QWidget
 
     from texlab.docks.bands.comparison import Comparison
@@ -101,7 +103,7 @@ class NumbersTable(QTableWidget):
         self.horizontalHeader().setMinimumSectionSize(56)
         self.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
         self.verticalHeader().setMinimumSectionSize(10)
-        self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 4)
+        self.verticalHeader().setDefaultSectionSize(self.fontMetrics().lineSpacing() + ROW_MARGIN)
         self.verticalHeader().setHighlightSections(False)
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
         self._theme: Theme | None = None
@@ -144,10 +146,23 @@ class NumbersTable(QTableWidget):
         across, down = self.horizontalHeader(), self.verticalHeader()
         # Room for the scroll bar that a low dock needs.
         width = down.sizeHint().width() + across.length() + self.verticalScrollBar().sizeHint().width()
-        return QSize(width, across.sizeHint().height() + down.length() + 4)
+        return QSize(width, self._height(self.fontMetrics().lineSpacing() + ROW_MARGIN))
+
+    def _height(self, row: int) -> int:
+        return self.horizontalHeader().sizeHint().height() + len(ROWS) * row + 4
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the gaps between rows out, when one teaches, before a row has to be scrolled."""
+        super().resizeEvent(event)
+        metrics = self.fontMetrics()
+        usual, tight = metrics.lineSpacing() + ROW_MARGIN, tight_line(metrics)
+        row = (self.height() - self._height(0)) // len(ROWS)
+        self.verticalHeader().setDefaultSectionSize(min(max(row, tight), usual) if is_teaching() else usual)
 
     def minimumSizeHint(self) -> QSize:
-        """Accept little room: the table scrolls."""
+        """Accept little room: the table scrolls; when one teaches, have room for all rows without gaps."""
+        if is_teaching():
+            return QSize(min(self.sizeHint().width(), 210), self._height(tight_line(self.fontMetrics())))
         return QSize(min(self.sizeHint().width(), 210), 50)
 
     def _paint_headings(self) -> None:

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout
 from texlab.docks.bands.comparison_view import HistogramPlot, NumbersTable
 from texlab.docks.bands.pictures import BandLarge, band_table
 from texlab.style.numbers import number
-from texlab.style.text_size import text_scale
+from texlab.style.text_size import is_teaching, text_scale
 from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.plots import ColourBar
@@ -81,7 +81,8 @@ class BandDetail(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         """Accept a narrow place: plot and numbers step back."""
-        return QSize(260, 80)
+        title = self.title.fontMetrics().lineSpacing()
+        return QSize(260, max(80, title + self.bar.minimumSizeHint().height() + 4) if is_teaching() else 80)
 
     def show_band(self, shown: BandLarge) -> None:
         """Show a band."""

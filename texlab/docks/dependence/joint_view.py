@@ -10,7 +10,6 @@ from PySide6.QtGui import QColor, QImage, QKeyEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from texlab.style.colouring import HISTOGRAM_TABLES, paint
-from texlab.style.text_size import text_scale
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.own_keys import OwnKeys, is_plain
 from texlab.widgets.plain import set_tip
@@ -127,8 +126,9 @@ class JointView(OwnKeys, QWidget):
 
     def minimumSizeHint(self) -> QSize:
         """Return what cells and a few numbers need."""
-        scale = text_scale(self)
-        return QSize(int(90 * scale), int(80 * scale))
+        metrics = self.fontMetrics()
+        side = max(60, 2 * metrics.height())
+        return QSize(side + metrics.horizontalAdvance("-4") + 7, side + metrics.height() + 3)
 
     # Where things are.
 
@@ -136,7 +136,7 @@ class JointView(OwnKeys, QWidget):
         """Return the square in which the histogram is painted."""
         metrics = self.fontMetrics()
         left, below = metrics.horizontalAdvance("-4") + 5.0, metrics.height() + 1.0
-        side = max(8.0, min(self.width() - left - 2, self.height() - below - 2))
+        side = max(8.0, min(self.width() - left - 4, self.height() - below - 2))
         return QRectF(left, 1, side, side)
 
     def cell_rect(self, row: int, column: int) -> QRectF:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout
 
 from texlab.docks.dependence.joint_view import JointView
 from texlab.widgets.headed import Headed
 from texlab.widgets.picture_pane import PicturePane
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.status_line import StatusLine
 
 if TYPE_CHECKING:
     from texlab.docks.dependence.panels import Panel
@@ -23,21 +23,23 @@ TIP = (
 )
 
 
+# A longer title gives way to an ellipsis: histogram and picture need the room.
+LINES = 2
+
+
 class PanelView(Headed):
     """Shows a panel; ``pinned(column, row, column of the picture)`` when a pixel is clicked."""
 
     pinned = Signal(int, int, int)
 
     def __init__(self, name: str, label: str, link: ViewLink) -> None:
-        self.title = Label("")
+        self.title = StatusLine(lines=LINES)
         self.joint = JointView(f"{name}-histogram", f"Histogram of the {label}")
         self.pane = PicturePane(f"{name}-picture", f"Pixels of the {label} in the chosen cells", link)
         super().__init__(self.title, self.joint, self.pane)
         self.panel: Panel | None = None
         self.title.setObjectName(f"{name}-title")
-        # The longest title must not widen the window.
-        self.title.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
-        self.title.setWordWrap(True)
+        self.title.setProperty("role", None)
         self.pane.hovered.connect(self._point)
         self.pane.clicked.connect(self._pin)
         line = QHBoxLayout()
@@ -59,9 +61,7 @@ class PanelView(Headed):
         if panel is None:
             self.pane.set_picture(None)
             return
-        self.title.setText(panel.words())
-        self.title.setAlignment(Qt.AlignmentFlag.AlignLeft)
-        set_tip(self.title, f"{panel.words()}. {TIP}")
+        self.title.show_parts([panel.words()], [TIP])
         if before is None or before.picture is not panel.picture:
             self.pane.set_picture(panel.picture)
 

@@ -150,7 +150,7 @@ class DeBonetView(ExplanationView):
         panes.addWidget(self.levels, 3)
         panes.addWidget(right, 2)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(6, 0, 6, 4)
+        layout.setContentsMargins(6, 0, 6, 1)
         layout.setSpacing(2)
         layout.addLayout(panes, 1)
         layout.addWidget(self.words)

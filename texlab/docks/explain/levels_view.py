@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from texlab.style.text_size import whole_words
+from texlab.style.text_size import MORE, whole_words
 from texlab.style.theme import DARK, LIGHT
 from texlab.widgets.image_pane import MARK_COLOURS
 from texlab.widgets.own_keys import OwnKeys, is_plain
@@ -19,7 +19,7 @@ from texlab.widgets.plain import set_tip
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PySide6.QtCore import QEvent
-    from PySide6.QtGui import QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent
+    from PySide6.QtGui import QFontMetrics, QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent
 
     from texlab.style.pictures import Picture
     from texlab.style.theme import Theme
@@ -115,7 +115,7 @@ class LevelsView(OwnKeys, QWidget):
 
     def minimumSizeHint(self) -> QSize:
         """Return what can still be seen."""
-        return QSize(200, 80)
+        return QSize(200, max(80, round(4.5 * self.fontMetrics().height())))
 
     # Where things are.
 
@@ -228,7 +228,7 @@ class LevelsView(OwnKeys, QWidget):
         head = QRectF(area.center().x() - pitch / 2, 0, pitch, metrics.height())
         for words, colour in ((each.title, self._theme.text), (each.note, self._theme.muted)):
             painter.setPen(QColor(colour))
-            painter.drawText(head, Qt.AlignmentFlag.AlignCenter, whole_words(words, metrics, pitch))
+            painter.drawText(head, Qt.AlignmentFlag.AlignCenter, _fitting(words, metrics, pitch))
             head.translate(0, metrics.height())
         painter.setBrush(Qt.BrushStyle.NoBrush)
         if tile == self._tile:
@@ -265,3 +265,12 @@ def _outline(painter: QPainter, places: list[QRectF], colour: str, width: int) -
     for pen_colour, pen_width in (("#000000", width + 2), (colour, width)):
         painter.setPen(QPen(QColor(pen_colour), pen_width))
         painter.drawRects(places)
+
+
+def _fitting(words: str, metrics: QFontMetrics, room: float) -> str:
+    """Return a title that fits: of "level 4" the number says more than the word; of other titles whole words."""
+    if metrics.horizontalAdvance(words) <= room:
+        return words
+    last = words.split(" ")[-1]
+    found = last if last.isdecimal() else whole_words(words, metrics, room)
+    return "" if MORE in found else found

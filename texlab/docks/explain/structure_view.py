@@ -88,6 +88,7 @@ class StructureView(QWidget):
     def show_structure(self, structure: Structure | None) -> None:
         """Show bars, or nothing where a level has no parents."""
         self._shown = structure
+        self.updateGeometry()
         self.update()
 
     def set_theme(self, theme: Theme) -> None:
@@ -101,7 +102,9 @@ class StructureView(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         """Return what can still be seen."""
-        return QSize(160, 70)
+        rows = 2 if self._shown is None else len(self._shown.names)
+        metrics = self.fontMetrics()
+        return QSize(160, max(70, round(metrics.ascent() + 5 + rows * (metrics.capHeight() + 1))))
 
     def cell_rect(self, row: int, column: int) -> QRectF:
         """Return where a bar with its limits is painted."""

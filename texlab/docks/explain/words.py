@@ -33,7 +33,8 @@ class Words(QWidget):
         self._lines = lines
         self._parts: tuple[Part, ...] = ()
         self._theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        # Large text leaves some of its lines to the pictures, where there is no room for all.
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Maximum)
 
     def text(self) -> str:
         """Return what is written."""
@@ -58,8 +59,8 @@ class Words(QWidget):
         return QSize(100, lines * self.fontMetrics().lineSpacing() + 2)
 
     def minimumSizeHint(self) -> QSize:
-        """Return the height of the hint."""
-        return QSize(40, self.sizeHint().height())
+        """Return the height of the lines; large text may end with the sign that there is more."""
+        return QSize(40, self._lines * self.fontMetrics().lineSpacing() + 2)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the parts one after the other, word by word; what has no room gives way to an ellipsis."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from PySide6.QtCore import QEvent, QSize
 from PySide6.QtWidgets import QStackedWidget, QTabBar, QVBoxLayout, QWidget
 
 from texlab.docks.base import Dock, Question
@@ -22,6 +23,8 @@ from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from PySide6.QtGui import QResizeEvent
 
     from texlab.docks.lab.page import LabPage
     from texlab.state.scene import Scene
@@ -175,9 +178,36 @@ class LabDock(Dock):
         within = page.name.removeprefix(f"{self.name}-")
         return super().settings() | {f"{within}-{name}": value for name, value in page.settings().items()}
 
+    def least_height(self, width: int) -> int:
+        """Return the height below which the chosen experiment has to be scrolled."""
+        return self.page.least_height(width) + (0 if self._folded else self.bar.sizeHint().height())
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the least size, without the names of the experiments where they are a control among others."""
+        needed = super().minimumSizeHint()
+        spare = self.bar.sizeHint().height() if self._folded and not self.bar.isHidden() else 0
+        return needed - QSize(0, spare)
+
+    def _make_bar(self) -> None:
+        """Show the names of the experiments; with the controls folded away, where there is room for them."""
+        room = self.height() - self.bar.sizeHint().height()
+        self.bar.setVisible(not self._folded or room >= self.page.least_height(self.width()))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the room to the chosen experiment."""
+        super().resizeEvent(event)
+        self._make_bar()
+
+    def event(self, event: QEvent) -> bool:
+        """Leave the room to the chosen experiment when it needs more."""
+        if event.type() == QEvent.Type.LayoutRequest and self._folded:
+            self._make_bar()
+        return super().event(event)
+
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to what the experiments show, or show their controls again."""
         self._folded = folded
+        self._make_bar()
         for page in self._pages.values():
             page.fold_controls(folded)
 

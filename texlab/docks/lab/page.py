@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,10 +12,11 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 from texlab.docks.frame import FramedDock
 from texlab.style.numbers import number
 from texlab.style.pictures import to_picture
-from texlab.widgets.headed import headed
+from texlab.style.text_size import is_teaching
+from texlab.widgets.headed import SLACK, headed
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.picture_pane import PicturePane
-from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.plain import FittedLabel, Label, set_tip
 from texlab.widgets.plane_pane import PlanePane
 from texlab.widgets.plots import Plot
 from texlab.widgets.view_link import ViewLink
@@ -110,9 +112,9 @@ class LabPage(FramedDock):
         if words:
             layout.addWidget(self.make_words())
 
-    def make_words(self) -> Label:
+    def make_words(self) -> FittedLabel:
         """Return the place for words about the pictures."""
-        self.words = Label(wraps=True)
+        self.words = FittedLabel()
         return self.words
 
 
@@ -178,18 +180,29 @@ SPACING = 4
 WORTH = 1.15
 
 
-def best_columns(count: int, width: int, height: int, heading: int) -> int:
+def best_columns(
+    count: int, width: int, height: int, heading: int, words: Sequence[int] = (), titles: Sequence[int] = ()
+) -> int:
     """Return how many of ``count`` square pictures with headings stand side by side where they are largest.
 
-    All of them do unless more rows make them clearly larger; sizes are in pixels.
+    All of them do unless more rows make them clearly larger, or the widest words of the headings, ``words`` pixels
+    each, have no room side by side. In narrow columns headings of ``titles`` pixels take more lines, ``heading``
+    pixels high. All sizes are in pixels.
     """
 
     def side(across: int) -> float:
         rows = -(-count // across)
-        return min((width - SPACING * (across - 1)) / across, (height - SPACING * (rows - 1)) / rows - heading)
+        across_each, down_each = (width + SPACING) / across - SPACING, (height + SPACING) / rows - SPACING
+        lines = max((math.ceil(each / max(across_each, 1)) for each in titles), default=1)
+        return min(across_each, down_each - lines * heading)
 
-    best = max(range(1, count + 1), key=lambda across: (side(across), across))
-    return best if side(best) > WORTH * max(side(count), 1.0) else count
+    def has_room(across: int) -> bool:
+        return sum(max(words[place::across], default=0) + SPACING for place in range(across)) <= width + SPACING
+
+    fitting = [across for across in range(1, count + 1) if not words or has_room(across)] or [1]
+    most = max(fitting)
+    best = max(fitting, key=lambda across: (side(across), across))
+    return best if side(best) > WORTH * max(side(most), 1.0) else most
 
 
 class Pictures(QWidget):
@@ -242,7 +255,14 @@ class Pictures(QWidget):
 
     def _arrange(self) -> None:
         count = len(self.shown) or len(self.panes)
-        across = best_columns(count, self.width(), self.height(), self.fontMetrics().lineSpacing())
+        metrics = self.fontMetrics()
+        words: list[int] = []
+        titles: list[int] = []
+        if is_teaching():
+            longest = ([metrics.horizontalAdvance(word) for word in each.title.split()] for each in self.shown)
+            words = [max(each, default=0) + SLACK for each in longest]
+            titles = [metrics.horizontalAdvance(each.title) + SLACK for each in self.shown]
+        across = best_columns(count, self.width(), self.height(), metrics.lineSpacing(), words, titles)
         if across == self._across:
             return
         grid, last = self._grid, max(across, self._across)

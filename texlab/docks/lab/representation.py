@@ -98,8 +98,8 @@ def stages(plane: representation.Plane, smoothing: float, threshold: float) -> t
         Shown("exemplar", to_picture(gray(plane)), plane),
         Shown("vertical²", to_picture(gray(found.vertical, white)), found.vertical),
         Shown("horizontal²", to_picture(gray(found.horizontal, white)), found.horizontal),
-        Shown("vertical, mean", to_picture(gray(found.smooth_vertical, mean)), found.smooth_vertical),
-        Shown("horizontal, mean", to_picture(gray(found.smooth_horizontal, mean)), found.smooth_horizontal),
+        Shown("vertical mean", to_picture(gray(found.smooth_vertical, mean)), found.smooth_vertical),
+        Shown("horizontal mean", to_picture(gray(found.smooth_horizontal, mean)), found.smooth_horizontal),
         Shown("classes", CLASS_COLOURS[found.classes], found.classes),
     )
     return shown, f"From black to white: {shares}."

@@ -51,6 +51,8 @@ SENTENCE = "A step of my own."
 # Around the titles of the list, in pixels.
 SLACK, ROW_MARGIN = 12, 4
 FAR = 100_000
+# A drawing is at least so high, as a part of the tab's width.
+DRAWING = 0.2
 
 
 class LessonsDock(FramedDock):
@@ -214,6 +216,7 @@ class LessonsDock(FramedDock):
         self._drawing.setVisible(has_drawing)
         # Nobody keeps room for what is hidden.
         self._grid.setColumnStretch(1, 3 * has_drawing)
+        self._share_width()
         self.pane.set_picture(None if drawn is None else drawn.sheet)
         self.lines.setText("" if drawn is None else "\n".join(drawn.lines))
 
@@ -224,6 +227,15 @@ class LessonsDock(FramedDock):
         self.edit_button.setChecked(wanted)
         self.edit_button.blockSignals(blocked)
         self._edits_copy = False
+
+    def least_height(self, width: int) -> int:
+        """Return the height below which a question or a drawing has too little room."""
+        has_drawing = not self._drawing.isHidden()
+        share = 2 / 5 if has_drawing else 1.0
+        words = self.words.least_height(round(share * width)) if self.words.isVisibleTo(self) else 0
+        # All of the width for a drawing is worth the height of the pictures: it has the exemplar in it.
+        drawing = self._drawing.minimumSizeHint().height() + round(DRAWING * width) if has_drawing else 0
+        return max(super().least_height(width), words, drawing)
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the room to the step that is given, or show the list again."""
@@ -256,6 +268,12 @@ class LessonsDock(FramedDock):
         """Give the list its share of the room."""
         super().resizeEvent(event)
         self._give_width()
+        self._share_width()
+
+    def _share_width(self) -> None:
+        """Give words as much width as the drawing where they are too long for less."""
+        long = self.words.least_height(round(2 / 5 * self.width())) > self.height()
+        self._grid.setColumnStretch(0, 3 if long else 2)
 
     def _show_parts(self) -> None:
         given, editing = self._lesson.lesson is not None, self.edit_button.isChecked()

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from texlab_core.documents.lessons import LessonStep
 
 
+MARGIN = 9
+
+
 class StepWords(QScrollArea):
     """Shows the words of a step; ``slid(parameter, value)`` when its slider is moved."""
 
@@ -42,6 +45,7 @@ class StepWords(QScrollArea):
         row.addWidget(self.slider_label)
         inner = QWidget()
         column = QVBoxLayout(inner)
+        column.setContentsMargins(MARGIN, 1, MARGIN, 1)
         for each in (self._slider_row, self.note, self.question, self.reveal, self.answer, self.try_this):
             column.addWidget(each)
         column.addStretch(1)
@@ -49,6 +53,13 @@ class StepWords(QScrollArea):
         self.setAccessibleName("Words of the step")
         self.setWidgetResizable(True)
         self.setWidget(inner)
+
+    def least_height(self, width: int) -> int:
+        """Return the height in which what students are asked need not be scrolled; a note alone gives way."""
+        inner = self.widget()
+        if self._step is None or inner is None or not (self._step.question or self._step.series):
+            return self.minimumSizeHint().height()
+        return max(inner.minimumSizeHint().height(), inner.heightForWidth(width))
 
     def show_step(self, step: LessonStep | None) -> None:
         """Show a step, its answer hidden; or what to do when there is none."""

@@ -127,6 +127,13 @@ class CodeDock(FramedDock):
         layout = QVBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 4)
         layout.addWidget(area)
+        self._area = area
+
+    def least_height(self, width: int) -> int:
+        """Return the height below which tables are scrolled down."""
+        inner = self._area.widget()
+        more = 0 if inner is None else inner.minimumSizeHint().height() - self._area.minimumSizeHint().height()
+        return super().least_height(width) + max(0, more)
 
     def _headed(self, group: Group, view: QWidget) -> QWidget:
         set_tip(view, f"{TIPS[group]}\n{HINT}")

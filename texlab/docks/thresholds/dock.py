@@ -19,7 +19,7 @@ from texlab.docks.thresholds.law_line import LawLine
 from texlab.docks.thresholds.rows import pasted, rows_text
 from texlab.docks.thresholds.table import Axes, KnownAxes, law_of, make_view, origin_of, table_field
 from texlab.state.intentions import EditField, Tell
-from texlab.style.text_size import grow_with_text
+from texlab.style.text_size import grow_with_text, is_teaching
 from texlab.widgets.number_box import NumberBox
 from texlab.widgets.plain import Label, set_tip
 from texlab_core.engine.registry import find_method
@@ -31,6 +31,8 @@ from texlab_core.work.tasks import finish
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from PySide6.QtGui import QResizeEvent
+
     from texlab.docks.thresholds.table import Origin, TableView
     from texlab.state.scene import ColumnScene, Scene
     from texlab_core.engine.inputs import ImageInput
@@ -39,6 +41,8 @@ if TYPE_CHECKING:
     from texlab_core.methods.de_bonet.thresholds import Cell, ThresholdTable
 
 SIDE = 250
+# Between table and distances, and at the borders.
+SPARE = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +95,7 @@ class ThresholdsDock(FramedDock):
         self.law.edited.connect(self._edit_law)
         beside = QWidget()
         grow_with_text(beside, SIDE, beside.setFixedWidth)
+        self._beside = beside
         column = QVBoxLayout(beside)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)
@@ -118,6 +123,15 @@ class ThresholdsDock(FramedDock):
         self.editor.pasted.connect(self.paste_rows)
         self.editor.say_more(self._more_words)
         self.distances.edited.connect(lambda value, final: self.editor.set_value(value, final=final))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the distances out where one teaches and there is room for the table only."""
+        super().resizeEvent(event)
+        self._make_room()
+
+    def _make_room(self) -> None:
+        needed = self.editor.minimumSizeHint().width() + self._beside.maximumWidth() + SPARE
+        self._beside.setVisible(not is_teaching() or needed <= self.width())
 
     def _build_controls(self) -> None:
         self.arrangement = self.add_choice(
@@ -237,6 +251,7 @@ class ThresholdsDock(FramedDock):
         view = self._view(column, getattr(column.params, field))
         self.arrangement.setVisible(view is not None and len(view.axes.channels) > 1)
         self.editor.show_view(view)
+        self._make_room()
         if view is not None:
             self.editor.show_counts(binds.counts(column, view.axes.depth))
             self.law.show_law(column.params, view.axes.depth)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +23,7 @@ from texlab.docks.thresholds.painting import (
     shades,
 )
 from texlab.docks.thresholds.table import cell_texts, runs
+from texlab.style.text_size import is_teaching, tight_line
 from texlab.style.theme import DARK, LIGHT
 
 if TYPE_CHECKING:
@@ -116,9 +119,23 @@ class TableMap(QWidget):
         return QSize(520, round(self._top() + rows * 30))
 
     def minimumSizeHint(self) -> QSize:
-        """Allow low docks; the small one keeps its height."""
+        """Allow low docks; the small one keeps its height. When one teaches, have room for every name."""
         hint = self.sizeHint()
-        return QSize(100, hint.height()) if self._small else QSize(200, 90)
+        if self._small:
+            return QSize(100, hint.height())
+        if self._view is None or not is_teaching():
+            return QSize(200, 90)
+        return QSize(*(max(pair) for pair in zip((200, 90), self._needed(self._view), strict=True)))
+
+    def _needed(self, view: TableView) -> tuple[int, int]:
+        """Return the width and height in which names of rows are whole, and the first words of groups."""
+        metrics = self.fontMetrics()
+        groups = Counter(head.group for head in view.heads)
+        shared = [metrics.horizontalAdvance(name.split(" ")[0]) / n for name, n in groups.items() if n > 1]
+        column = max(shared, default=0.0)
+        columns = len(view.heads) * max(column, metrics.averageCharWidth()) + GROUP_GAP * len(groups)
+        height = self._top() + self._rows() * tight_line(metrics)
+        return math.ceil(self._left() + columns + self._right()), math.ceil(height)
 
     # Where things are.
 
@@ -254,6 +271,10 @@ class TableMap(QWidget):
     def _paint_group(self, painter: QPainter, group: str, area: QRectF) -> None:
         metrics = self.fontMetrics()
         words = metrics.elidedText(group, Qt.TextElideMode.ElideRight, int(area.width()))
+        if is_teaching() and words != group:
+            # "first" says as much as "first derivative"; what cannot be read from afar the signs below tell.
+            words = group.split(" ")[0]
+            words = words if metrics.horizontalAdvance(words) <= area.width() else ""
         painter.setPen(QColor(self._theme.text))
         line = QRectF(area.left(), 0, area.width(), metrics.height())
         painter.drawText(line, Qt.AlignmentFlag.AlignCenter, words)
