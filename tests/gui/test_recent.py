@@ -5,6 +5,7 @@ import threading
 
 import numpy as np
 
+from texlab.docks import recent as recent_module
 from texlab.docks.recent import Recent, Same
 
 
@@ -25,6 +26,19 @@ def test_bounded_by_weight_but_two_always_stay():
     for key, weight in ((1, 4), (2, 4), (3, 4), (4, 90), (4, 0), (3, 0)):
         recent.get(key, lambda key=key, weight=weight: made.append(key) or weight)
     assert made == [1, 2, 3, 4]
+
+
+def test_what_is_counted_is_weighed_as_well(monkeypatch):
+    monkeypatch.setattr(recent_module, "MOST_BYTES", 1000)
+    recent = Recent(6)
+    shared = np.zeros(300, np.uint8)
+    values = {1: np.zeros(400, np.uint8), 2: (shared, shared[:10], "words"), 3: {"a": shared}, 4: 5, 5: shared[1:]}
+    for key, value in values.items():
+        recent.get(key, lambda value=value: value)
+        assert len(recent) == min(key, 4)
+    # 400 + 300 + 300 + 0 are no more than 1000.
+    assert [recent.get(key, lambda: "again") is values[key] for key in (2, 3, 4, 5)] == [True] * 4
+    assert recent.get(1, lambda: "again") == "again"
 
 
 def test_same_is_identity():

@@ -58,7 +58,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--every", type=int, default=1000, help="events between two counts")
     parser.add_argument("--reopen", type=int, default=500, help="events between two windows; 0: one window")
     parser.add_argument("--growth", type=float, default=0.05, help="share allowed after the first count")
-    parser.add_argument("--objects", action="store_true", help="list the Python types that grew")
+    parser.add_argument("--objects", action="store_true", help="list the types that grew, and the largest arrays")
     parser.add_argument("--trace", action="store_true", help="list the lines whose memory grew (slow)")
     options = parser.parse_args(arguments)
     if hasattr(signal, "SIGUSR1"):
@@ -184,6 +184,8 @@ class Soak:
         if self.counts and self.options.objects:
             for name, count in (found.types - self.counts[-1].types).most_common(25):
                 print(f"        {count:>+8} {name}")
+        if self.options.objects:
+            print("        " + "\n        ".join(census.largest_arrays(8)), flush=True)
         if self.options.trace:
             before, self._snapshot = self._snapshot, tracemalloc.take_snapshot()
             for each in self._snapshot.compare_to(before, "traceback")[:12] if before is not None else ():

@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 import shiboken6
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QPixmapCache
@@ -109,6 +110,19 @@ def let_go() -> None:
         if isinstance(each, Recent):
             each.clear()
     gc.collect()
+
+
+def largest_arrays(count: int) -> list[str]:
+    """Return what the largest arrays are that anything holds, and what holds them; the sum comes first."""
+    found: dict[int, tuple[int, str]] = {}
+    for holder in gc.get_objects():
+        for each in gc.get_referents(holder):
+            if isinstance(each, np.ndarray) and each.base is None:
+                name = ", ".join(map(str, list(holder)[:6])) if isinstance(holder, dict) else type(holder).__name__
+                found[id(each)] = each.nbytes, f"{each.shape} {each.dtype} in {name}"
+    ordered = sorted(found.values(), reverse=True)
+    whole = f"{sum(size for size, _ in ordered) / 2**20:.2f} MB in {len(ordered)} arrays"
+    return [whole, *(f"{size / 2**20:.2f} MB {what}" for size, what in ordered[:count])]
 
 
 class _Mallinfo2(ctypes.Structure):

@@ -7,6 +7,8 @@ import weakref
 from collections import OrderedDict, deque
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from texlab_core.engine.cache import array_bytes
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator
 
@@ -14,6 +16,8 @@ ValueT = TypeVar("ValueT")
 
 # Enough for going back and forth between what is compared.
 MOST = 12
+# What is counted is weighed too: of a picture of 16 megapixels a few are too many.
+MOST_BYTES = 96 * 2**20
 
 
 class Same:
@@ -62,6 +66,8 @@ class Same:
 class Recent:
     """Values by key, the most recently used ones, as many as weigh no more than ``capacity`` together.
 
+    Without ``weigh`` at most ``capacity`` values, whose arrays take no more than 96 MB together.
+
     What was made of something that has gone goes too: a value whose key holds a :class:`Same` of it.
 
     Parameters
@@ -69,16 +75,17 @@ class Recent:
     capacity
         What they may weigh together.
     weigh
-        What one weighs; 1 without it.
+        What one weighs; asked once, when it is made.
     most
         How many there may be, whatever they weigh.
     """
 
     def __init__(self, capacity: float, weigh: Callable[[Any], float] | None = None, most: int = MOST) -> None:
-        self._capacity = capacity
-        self._most = most
-        self._weigh = weigh or (lambda value: 1.0)
+        self._capacity: float = MOST_BYTES if weigh is None else capacity
+        self._most = most if weigh is not None else min(most, int(capacity))
+        self._weigh = weigh or _bytes_of
         self._values: OrderedDict[Hashable, Any] = OrderedDict()
+        self._weights: dict[Hashable, float] = {}
         self._watched: dict[Hashable, tuple[weakref.ref[Any], ...]] = {}
         # Keys of what has gone; objects go at any moment, also while the lock is held.
         self._gone: deque[Hashable] = deque()
@@ -94,15 +101,15 @@ class Recent:
             found: ValueT = known[0]
             return found
         made = make()
-        watched = self._watch(key)
+        watched, weight = self._watch(key), self._weigh(made)
         with self._lock:
             kept: ValueT = self._values.setdefault(key, made)
             self._watched.setdefault(key, watched)
-            weight = sum(self._weigh(value) for value in self._values.values())
-            while (weight > self._capacity or len(self._values) > self._most) and len(self._values) > 2:
-                oldest = next(iter(self._values))
-                weight -= self._weigh(self._values[oldest])
-                self._drop(oldest)
+            self._weights.setdefault(key, weight)
+            while len(self._values) > 2 and (
+                len(self._values) > self._most or sum(self._weights.values()) > self._capacity
+            ):
+                self._drop(next(iter(self._values)))
         if any(each.gone for each in _parts(key)):
             # It went before it was kept.
             self._gone.append(key)
@@ -127,6 +134,7 @@ class Recent:
         with self._lock:
             self._values.clear()
             self._watched.clear()
+            self._weights.clear()
 
     def _watch(self, key: Hashable) -> tuple[weakref.ref[Any], ...]:
         """Notice when a part of a key goes."""
@@ -153,6 +161,7 @@ class Recent:
     def _drop(self, key: Hashable) -> None:
         self._values.pop(key, None)
         self._watched.pop(key, None)
+        self._weights.pop(key, None)
 
 
 def _parts(key: Hashable) -> Iterator[Same]:
@@ -162,3 +171,7 @@ def _parts(key: Hashable) -> Iterator[Same]:
     elif isinstance(key, tuple):
         for each in key:
             yield from _parts(each)
+
+
+def _bytes_of(value: object) -> int:
+    return array_bytes(value, set())
