@@ -59,6 +59,12 @@ class Order:
         """The hashes of the parcels it needs."""
         return tuple(sorted({slip.parcel for slip in self.slips.values() if slip.parcel}))
 
+    @property
+    def subject(self) -> str:
+        """What most of the work is about: the hash of the exemplar, of all inputs where there is none."""
+        slip = self.slips.get("exemplar")
+        return " ".join(sorted(each.sha256 for each in self.slips.values())) if slip is None else slip.sha256
+
 
 @dataclass(frozen=True, slots=True)
 class Outcome:

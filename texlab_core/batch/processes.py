@@ -13,7 +13,7 @@ import multiprocessing
 import os
 import shutil
 import tempfile
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,7 @@ from texlab_core.batch import child
 from texlab_core.batch.orders import Order, Outcome
 from texlab_core.batch.parcels import Deposit
 from texlab_core.batch.places import POLL_S
+from texlab_core.batch.supply import Supply
 from texlab_core.errors import Cancelled, InputError, ParamError
 from texlab_core.files.regular import reason
 
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from texlab_core.batch.places import Loaded, Outcomes, ShouldStop
 
 MAX_PROCESSES = 256
+# A process has the next order at hand while none takes longer; a long one would keep it from those who are idle.
+SHORT_S = 3.0
 # An order whose process died gets so many more, each alone, before it is given up.
 CHANCES = 2
 UNBORN = (
@@ -78,11 +81,11 @@ class Processes:
                 self._crew.end()
                 self._crew = None
 
-    def begin(self) -> None:
-        """Start the processes now, for a run that is about to come: they load while the first input is read."""
+    def begin(self, jobs: int) -> None:
+        """Start the processes now, for a run of so many jobs: they load while the first input is read."""
         if self._crew is None:
             self._crew = self._begin()
-            self._crew.begin()
+            self._crew.begin(jobs)
 
     def run(self, orders: Iterable[Loaded], should_stop: ShouldStop | None = None) -> Outcomes:
         """Carry orders out; see :meth:`texlab_core.batch.places.Place.run`."""
@@ -103,10 +106,9 @@ class Processes:
 
 
 class _Crew:
-    """A pool that is made again when one of its processes dies."""
+    """Processes, each of which is a pool of its own: one that dies takes no other one's orders with it."""
 
     def __init__(self, width: int, drop: _Drop) -> None:
-        self._width = width
         self._drop = drop
         # A child of a program with threads must not be a copy of it.
         self._context = multiprocessing.get_context("spawn")
@@ -116,88 +118,100 @@ class _Crew:
         except OSError as error:
             # A bare system may lack what processes share.
             raise InputError(f"No processes can be started here ({error.strerror}); use only one.") from error
-        self._pool: ProcessPoolExecutor | None = None
+        self._pools: list[ProcessPoolExecutor | None] = [None] * width
 
-    def begin(self) -> None:
-        """Start the processes, which load what jobs need."""
-        # A pool starts its processes with the first that is asked of it.
-        self._started().submit(child.be_ready)
+    def begin(self, jobs: int) -> None:
+        """Start as many processes as so many jobs need, all at once."""
+        # A pool starts its process with the first that is asked of it.
+        for number in range(min(jobs, len(self._pools))):
+            self._started(number).submit(child.be_ready)
 
     def outcomes(self, orders: Iterator[Loaded], should_stop: ShouldStop | None) -> Outcomes:
-        waiting: dict[Future[Outcome], Order] = {}
+        supply = Supply(orders, len(self._pools))
+        waiting: dict[Future[Outcome], tuple[Order, int]] = {}
         lost: list[Order] = []
-        more = True
+        more, longest = True, 0.0
         while more or waiting or lost:
             if should_stop is not None and should_stop():
                 raise Cancelled
             if lost and not waiting:
-                self._renew()
                 for order in lost:
                     yield self._alone(order, should_stop)
                     self._drop.leave(order.parcels)
                 lost = []
-            while more and not lost and len(waiting) < 2 * self._width:
-                loaded = next(orders, None)
+            while more and not lost:
+                number = self._free([each for _, each in waiting.values()], 2 if 0 < longest < SHORT_S else 1)
+                if number is None:
+                    break
+                loaded = supply.next(number)
                 if loaded is None:
                     more = False
                     break
                 order = loaded[0]
                 self._drop.bring(loaded[1])
                 try:
-                    waiting[self._submit(order)] = order
+                    waiting[self._started(number).submit(child.carry_out, order)] = order, number
                 except BrokenProcessPool:
-                    self._lose(order, lost)
+                    self._lose(order, number, lost)
             for future in wait(waiting, POLL_S, FIRST_COMPLETED).done:
-                order = waiting.pop(future)
+                order, number = waiting.pop(future)
                 try:
                     outcome = future.result()
                 except BrokenProcessPool:
-                    self._lose(order, lost)
+                    self._lose(order, number, lost)
                     continue
+                longest = max(longest, outcome.elapsed_s)
                 yield outcome
                 self._drop.leave(order.parcels)
 
-    def _submit(self, order: Order) -> Future[Outcome]:
-        return self._started().submit(child.carry_out, order)
+    def _free(self, busy: list[int], depth: int) -> int | None:
+        """Return the process with the fewest orders, when these are fewer than ``depth``."""
+        number = min(range(len(self._pools)), key=busy.count)
+        return number if busy.count(number) < depth else None
 
-    def _started(self) -> ProcessPoolExecutor:
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(
-                self._width,
+    def _started(self, number: int) -> ProcessPoolExecutor:
+        pool = self._pools[number]
+        if pool is None:
+            pool = self._pools[number] = ProcessPoolExecutor(
+                1,
                 mp_context=self._context,
                 initializer=child.start,
                 initargs=(self._stop, self._begun, str(self._drop.folder)),
             )
-        return self._pool
+        return pool
 
-    def _lose(self, order: Order, lost: list[Order]) -> None:
+    def _lose(self, order: Order, number: int, lost: list[Order]) -> None:
         """Keep an order for another try; there is none where no process has ever begun."""
         if not self._begun.is_set():
             raise InputError(UNBORN)
+        self._end([number])
         lost.append(order)
 
     def _alone(self, order: Order, should_stop: ShouldStop | None) -> Outcome:
         """Run an order that was lost with nothing beside it, so that it is clear which one kills its process."""
         for _ in range(CHANCES):
-            future = self._submit(order)
+            future = self._started(0).submit(child.carry_out, order)
             try:
                 while not wait([future], POLL_S).done:
                     if should_stop is not None and should_stop():
                         raise Cancelled
                 return future.result()
             except BrokenProcessPool:
-                self._renew()
+                self._end([0])
         return Outcome(order.key, error=DIED.format(CHANCES + 1))
 
-    def _renew(self) -> None:
-        if self._pool is not None:
-            self._pool.shutdown(wait=True, cancel_futures=True)
-            self._pool = None
+    def _end(self, numbers: Iterable[int]) -> None:
+        pools = [pool for number in numbers if (pool := self._pools[number]) is not None]
+        if pools:
+            # Side by side: each takes its time to end.
+            with ThreadPoolExecutor(len(pools), thread_name_prefix="texlab-ends") as hands:
+                list(hands.map(lambda pool: pool.shutdown(wait=True, cancel_futures=True), pools))
+        self._pools = [None if pool in pools else pool for pool in self._pools]
 
     def end(self) -> None:
         """Stop what runs, at its next step, wait until every process has ended, and remove the inputs."""
         self._stop.set()
-        self._renew()
+        self._end(range(len(self._pools)))
         shutil.rmtree(self._drop.folder, ignore_errors=True)
 
 

@@ -139,7 +139,7 @@ def run_batch(
             place = Processes(place.width, folder.scratch)
         run = _Run(plan, folder, place, sample, on_progress)
         if isinstance(place, Processes) and not folder.has_records:
-            place.begin()
+            place.begin(run.total)
         return run.result(should_stop)
 
 
