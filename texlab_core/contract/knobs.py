@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
+from collections import OrderedDict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from texlab_core.contract.declarations import others, settings
 from texlab_core.contract.runs import promise_same_bits
 from texlab_core.engine.cache import AnalysisCache
 from texlab_core.engine.params import describe
-from texlab_core.engine.run import run
+from texlab_core.engine.run import model_of, run
 from texlab_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,51 +28,78 @@ if TYPE_CHECKING:
 
 # Pairs of jobs that differ in one knob, for which a kept analysis is compared with a new one.
 COMPARED = 4
+# Results in memory at a time; jobs that come again do so soon.
+KEPT = 64
 
 
 def check_living_knobs(method: Method) -> None:
     """Have no dead knob: another value of each changes some bit of a result."""
+    kept = Kept()
     for field in describe(method.params):
         tried = field.kind != "value" or likely(field)
         promise(tried, f"{field.name}: give {field.type.__name__} a class method example() for another value.")
         promise(
-            any(_differ(one, other) for one, other in pairs(method, field)),
+            any(_differ(kept, one, other) for one, other in pairs(method, field)),
             f"The knob {field.name} of {method.id} is dead: no value changed any bit of a result. Use it, remove "
             "it, or say with Knob(when=...) under which other value it has an effect.",
         )
 
 
-def _differ(one: Job, other: Job) -> bool:
+class Kept:
+    """Results by job, the latest ones; that equal jobs give equal bits is promised elsewhere."""
+
+    def __init__(self) -> None:
+        self._results: OrderedDict[tuple[object, ...], Result | None] = OrderedDict()
+
+    def __call__(self, job: Job) -> Result | None:
+        """Return the result of a job, or None where the method refuses it."""
+        if job.key not in self._results:
+            try:
+                self._results[job.key] = run(job)
+            except InputError:
+                self._results[job.key] = None
+            if len(self._results) > KEPT:
+                self._results.popitem(last=False)
+        return self._results[job.key]
+
+
+def _differ(kept: Kept, one: Job, other: Job) -> bool:
     """Whether two jobs give other pictures, measures or maps; not where one is refused."""
-    try:
-        return not same(run(one), run(other))
-    except InputError:
-        return False
+    first = kept(one)
+    second = None if first is None else kept(other)
+    return first is not None and second is not None and not same(first, second)
 
 
 def check_cached_analysis(method: Method) -> None:
     """Give the knobs that the analysis depends on the stage "analysis", so that it is kept only for them."""
     exemplar = texture(20, 24)
     cache = AnalysisCache(capacity=1000)
+    kept = Kept()
     for params in settings(method):
         try:
-            fresh = run(job(method, exemplar, params=params, size=(14, 18)))
+            tried = job(method, exemplar, params=params, size=(14, 18))
         except InputError:
+            continue
+        fresh = kept(tried)
+        if fresh is None:
             continue
         promise_same_bits(
             fresh,
-            run(job(method, exemplar, params=params, size=(14, 18)), cache=cache),
+            run(tried, cache=cache),
             f"with the analysis of other parameters ({params}): one of them needs stage='analysis'",
         )
     for field in describe(method.params):
         compared = 0
         for one, other in pairs(method, field):
             cache = AnalysisCache()
+            fresh = kept(other)
+            if fresh is None:
+                continue
             try:
-                run(one, cache=cache)
-                fresh, cached = run(other), run(other, cache=cache)
+                model_of(one, cache=cache)
             except InputError:
                 continue
+            cached = run(other, cache=cache)
             compared += 1
             when = f"with {field.name} = {getattr(other.params, field.name)!r} and the analysis of another value"
             promise_same_bits(fresh, cached, f"{when}: the knob needs stage='analysis'")
