@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ import pytest
 if TYPE_CHECKING:
     from types import ModuleType
 
+REALLY = subprocess.run
 SCRIPT = Path(__file__).resolve().parents[2] / ".ci" / "setup_env.py"
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="system packages are installed on Linux only")
 
@@ -41,6 +43,11 @@ def setup_env(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.delenv("DISPLAY", raising=False)
     module.commands = commands  # type: ignore[attr-defined]
     return module
+
+
+def installs(setup_env: ModuleType) -> list[list[str]]:
+    """Return what pip was asked for."""
+    return [command for command in setup_env.commands if command[1:4] == ["-m", "pip", "install"]]
 
 
 def test_an_ordinary_user_is_told_the_one_command(
@@ -83,7 +90,7 @@ def test_a_virtual_x_server_is_welcome_but_not_needed(
     monkeypatch.setattr(setup_env.importlib.util, "find_spec", lambda name: True)
     assert setup_env.main("test") == 0
     assert capsys.readouterr().err.startswith("Without xvfb the tests")
-    assert setup_env.commands[-1][-2:] == ["--editable", ".[test]"]
+    assert installs(setup_env)[-1][-2:] == ["--editable", ".[test]"]
     assert (setup_env.VENV / ".ready-test").exists()
     assert (setup_env.VENV / ".ready-run").exists()
 
@@ -99,7 +106,7 @@ def locked(setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType
 
 def test_locked_versions_are_installed_with_their_hashes(locked: ModuleType) -> None:
     assert locked.main("test") == 0
-    versions, own = locked.commands[-2:]
+    versions, own = installs(locked)
     assert versions[-3:] == ["--require-hashes", "--requirement", str(locked.LOCK)]
     assert own[-3:] == ["--no-deps", "--editable", "."]
 
@@ -120,7 +127,7 @@ def test_a_wrong_hash_is_refused_and_a_missing_version_replaced(
 
     monkeypatch.setattr(locked.subprocess, "run", run)
     assert locked.main("test") == code
-    assert last in locked.commands[-1]
+    assert last in installs(locked)[-1]
     assert said.strip() in capsys.readouterr().err
 
 
@@ -128,3 +135,23 @@ def test_only_a_window_needs_the_libraries_of_x11(setup_env: ModuleType, monkeyp
     assert "libxcb-cursor0" not in setup_env.missing_packages("run")
     monkeypatch.setenv("DISPLAY", ":0")
     assert "libxcb-cursor0" in setup_env.missing_packages("run")
+
+
+def test_what_is_installed_is_compiled_on_all_cores_but_for_the_tests_of_others(
+    setup_env: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(setup_env.subprocess, "run", REALLY)
+    packages = setup_env.VENV / "lib" / "python3" / "site-packages"
+    for name in ("one/__init__.py", "one/tests/test_one.py", "two/test/here.py", "two/testing/here.py", "odd.py"):
+        path = packages / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("1 +" if name == "odd.py" else "value = 1\n")
+    setup_env.compile_installed(Path(sys.executable))
+    compiled = {path.parent.parent.name + "/" + path.name.split(".")[0] for path in packages.rglob("*.pyc")}
+    assert compiled == {"one/__init__", "testing/here"}
+
+
+def test_pip_leaves_compiling_to_it(locked: ModuleType) -> None:
+    assert locked.main("test") == 0
+    assert all("--no-compile" in command for command in installs(locked))
+    assert locked.commands[-1][2:4] == ["compileall", "-qq"]
