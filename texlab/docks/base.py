@@ -50,6 +50,8 @@ class Dock(OwnKeys, QWidget):
     """How long an answer stays before the dock is asked again."""
 
     asks = Signal()
+    needs_room = Signal()
+    """When one teaches: what is shown may have another ``least_height``."""
     intention = Signal(object)
     """A value of :mod:`texlab.state.intentions`."""
 

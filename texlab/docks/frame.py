@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt
+from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -172,6 +172,8 @@ class FramedDock(Dock):
         self._told.setMargin(2 * MARGIN)
         self._told.hide()
         self._folded = False
+        self._room.asked.connect(self._ask_for_room)
+        self._stack.currentChanged.connect(self._ask_for_room)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
@@ -239,6 +241,7 @@ class FramedDock(Dock):
         self._mark_stale(False)
         self._message.setText(self.why or reason or self.empty)
         self._stack.setCurrentWidget(self._message)
+        self._ask_for_room()
         if self.heavy:
             self.clear_shown()
         self.tell_again()
@@ -297,7 +300,10 @@ class FramedDock(Dock):
 
     def least_height(self, width: int) -> int:
         """Return the height below which the body has to be scrolled, without the line for values."""
-        return self._room.needed(width).height() + (0 if self._folded else self._fold.sizeHint().height())
+        needed = self._room.needed(width).height()
+        if self.message is not None:
+            needed = max(needed, self._message.heightForWidth(width))
+        return needed + (0 if self._folded else self._fold.sizeHint().height())
 
     def minimumSizeHint(self) -> QSize:
         """Return the least size, without the line for values: nobody makes room for it."""
@@ -309,11 +315,10 @@ class FramedDock(Dock):
         super().resizeEvent(event)
         self._make_line()
 
-    def event(self, event: QEvent) -> bool:
-        """Tell values where there is room for them when the body asks for other room."""
-        if event.type() == QEvent.Type.LayoutRequest and self._folded:
+    def _ask_for_room(self, *_: object) -> None:
+        if self._folded:
             self._make_line()
-        return super().event(event)
+            self.needs_room.emit()
 
     def show_body(self) -> None:
         """Show the body instead of a sentence: what is in it needs no answer."""

@@ -41,6 +41,8 @@ class Theme:
 
 # Fusion keeps a picture of every button and box that it drew, by size and palette, also of those that have gone.
 DRAWN_KB = 2048
+# Text from this size on, in points, has marks, arrows, handles and bars of its own size.
+LARGE = 13.0
 
 LIGHT = Theme(
     name="light",
@@ -190,6 +192,27 @@ def stylesheet(theme: Theme, points: float) -> str:
     QProgressBar::chunk {{ background: {theme.accent}; border-radius: 2px; }}
     QSplitter::handle {{ background: {theme.window}; }}
     QSplitter::handle:hover {{ background: {theme.accent}; }}
+    {_large(theme, points)}
+    """
+
+
+def _large(theme: Theme, points: float) -> str:
+    """Return the rules for what is to be hit and read beside large text: the style's own has one size."""
+    if points < LARGE:
+        return ""
+    side, thin, bar = round(1.3 * points), max(3, round(0.25 * points)), round(1.1 * points)
+    handle = f"width: {side}px; margin: -{(side - thin) // 2}px 0; border-radius: {thin // 2}px"
+    return f"""
+    QCheckBox::indicator, QRadioButton::indicator, QGroupBox::indicator {{ width: {side}px; height: {side}px; }}
+    QAbstractItemView::indicator {{ width: {side}px; height: {side}px; }}
+    QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: {side}px; }}
+    QScrollBar:vertical {{ width: {bar}px; }}
+    QScrollBar:horizontal {{ height: {bar}px; }}
+    QSlider:horizontal {{ min-height: {side + 2}px; }}
+    QSlider::groove:horizontal {{ height: {thin}px; border-radius: {thin // 2}px; background: {theme.border}; }}
+    QSlider::sub-page:horizontal {{ border-radius: {thin // 2}px; background: {theme.accent}; }}
+    QSlider::handle:horizontal {{ {handle}; border: 1px solid {theme.muted}; background: {theme.raised}; }}
+    QTabBar::scroller {{ width: {2 * side}px; }}
     """
 
 

@@ -43,7 +43,8 @@ class Headed(QWidget):
         widest = max((metrics.horizontalAdvance(word) for word in self._title.text().split()), default=0)
         needed = super().minimumSizeHint().expandedTo(QSize(widest + SLACK, 0))
         if is_teaching():
-            least = (each.minimumSizeHint().expandedTo(each.minimumSize()).height() for each in self._views)
+            # As for Qt, a least size that was given counts instead of what a view says.
+            least = (each.minimumHeight() or each.minimumSizeHint().height() for each in self._views)
             lines = self._title.heightForWidth(max(self.width(), needed.width()))
             needed = needed.expandedTo(QSize(0, lines + GAP + max(least, default=0)))
         return needed

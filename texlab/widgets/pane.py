@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor
 
 from texlab.style.theme import configure_pyqtgraph
@@ -22,6 +22,8 @@ configure_pyqtgraph()
 
 # A press and a release that are closer, in pixels, are a click.
 CLICK_PX = 3
+# Pixels a side.
+LEAST = 68
 
 PaneT = TypeVar("PaneT")
 
@@ -83,6 +85,10 @@ class Pane(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
         link.join(self)
 
     # For subclasses.
+
+    def minimumSizeHint(self) -> QSize:
+        """Return the same, however wide the bars are that a pane never shows."""
+        return QSize(LEAST, LEAST)
 
     def point_at(self, place: QPointF) -> None:
         """Take note of where the pointer is."""

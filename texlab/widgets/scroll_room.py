@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QFrame, QScrollArea, QSizePolicy, QStyle
 
 from texlab.style.text_size import is_teaching
@@ -19,7 +19,12 @@ MOST = (0.6, 0.3)
 
 
 class ScrollRoom(QScrollArea):
-    """Holds one widget, which is as large as the room; when one teaches, as it has to be at least, and scrolls."""
+    """Holds one widget, which is as large as the room; when one teaches, as it has to be at least, and scrolls.
+
+    ``asked()`` when what is inside asks for other room.
+    """
+
+    asked = Signal()
 
     def __init__(self, inner: QWidget, name: str) -> None:
         super().__init__()
@@ -91,6 +96,7 @@ class ScrollRoom(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
             self.updateGeometry()
             self._fit()
+            self.asked.emit()
         return super().eventFilter(watched, event)
 
 

@@ -24,6 +24,7 @@ from texlab.style.theme import apply_theme
 from texlab.widgets.mime import brought_by, take_copy
 from texlab.widgets.once import Once
 from texlab.widgets.plain import Label, set_tip
+from texlab.widgets.title_bar import grow_title
 from texlab.window.big_panel import BigPanel
 from texlab.window.commands import COMMANDS, make_actions
 from texlab.window.gallery import GalleryView
@@ -124,6 +125,7 @@ class MainWindow(QMainWindow):
         dock = QDockWidget(title, self)
         dock.setObjectName(f"side-{title.lower()}")
         dock.setWidget(widget)
+        grow_title(dock)
         widget.setMinimumWidth(150)
         self.addDockWidget(area, dock)
         self.resizeDocks([dock], [width], Qt.Orientation.Horizontal)
@@ -146,6 +148,7 @@ class MainWindow(QMainWindow):
         for name, host in hosts.items():
             dock = QDockWidget(host.kind.title, self)
             dock.setObjectName(f"tab-{name}")
+            grow_title(dock)
             set_tip(dock, host.kind.help)
             set_tip(dock.toggleViewAction(), host.kind.help)
             dock.toggleViewAction().triggered.connect(partial(self._shown_by_menu, name))

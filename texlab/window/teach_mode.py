@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject
+from PySide6.QtCore import QObject
 from PySide6.QtGui import QKeySequence
 
 from texlab.columns.arrangement import LEAST_PICTURE
@@ -74,7 +74,6 @@ class TeachMode(QObject):
         self._given = False, 0.0
         self._is_new = self._by_hand = False
         self._settling = Once(self, 0, self._settle_room)
-        window.installEventFilter(self)
         self._was_full = self._was_on = False
         layouts, actions = window.layouts, window.actions_by_name
         layouts.leaving, layouts.changed = self._close_overlays, self.show_layout
@@ -106,7 +105,9 @@ class TeachMode(QObject):
         session.selected.connect(lambda _: self._show_columns())
         session.changed.connect(lambda *_: self._show_columns())
         for host in hosts.values():
-            host.made.connect(self._fold_one)
+            host.made.connect(self._take_in)
+            if host.is_made:
+                host.dock.needs_room.connect(self._settle_soon)
         self.show_layout()
 
     @property
@@ -228,11 +229,14 @@ class TeachMode(QObject):
         if self.on and self._lesson.step is not None and not self._by_hand:
             self._make_room(self._lesson.step)
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Look again when a part of the window asks for other room: answers come late."""
-        if event.type() == QEvent.Type.LayoutRequest and self.on and self._lesson.step is not None:
+    def _take_in(self, dock: Dock) -> None:
+        self._fold_one(dock)
+        dock.needs_room.connect(self._settle_soon)
+
+    def _settle_soon(self) -> None:
+        """Look again when a tab asks for other room: answers come late."""
+        if self.on and self._lesson.step is not None:
             self._settling.start()
-        return False
 
     def _height_beside_pictures(self) -> int:
         """Return what sentence and pictures leave of the window's height."""

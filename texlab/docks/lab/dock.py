@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from PySide6.QtCore import QEvent, QSize
+from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QStackedWidget, QTabBar, QVBoxLayout, QWidget
 
 from texlab.docks.base import Dock, Question
@@ -104,6 +104,7 @@ class LabDock(Dock):
             page.fold_controls(self._folded)
             page.asks.connect(self.asks)
             page.intention.connect(self.intention)
+            page.needs_room.connect(self._ask_for_room)
             self.pages.addWidget(page)
         return page
 
@@ -116,6 +117,7 @@ class LabDock(Dock):
 
     def _changed(self, _: int) -> None:
         self._show_page()
+        self._ask_for_room()
         self.asks.emit()
 
     # The contract of docks: what the chosen experiment says.
@@ -198,11 +200,9 @@ class LabDock(Dock):
         super().resizeEvent(event)
         self._make_bar()
 
-    def event(self, event: QEvent) -> bool:
-        """Leave the room to the chosen experiment when it needs more."""
-        if event.type() == QEvent.Type.LayoutRequest and self._folded:
-            self._make_bar()
-        return super().event(event)
+    def _ask_for_room(self) -> None:
+        self._make_bar()
+        self.needs_room.emit()
 
     def fold_controls(self, folded: bool) -> None:
         """Leave the whole room to what the experiments show, or show their controls again."""
