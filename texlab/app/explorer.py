@@ -41,6 +41,7 @@ from texlab.window.own_layouts import OwnLayouts
 from texlab.window.presenter import Presenter
 from texlab.window.stage_settings import StageSettings
 from texlab.window.tab_pictures import TabPictures
+from texlab.window.tabs_ahead import TabsAtRest
 from texlab.window.teach_mode import TeachMode
 from texlab.window.teacher import Teacher
 from texlab.window.tuning import Tuning
@@ -159,6 +160,7 @@ class Explorer(QObject):
         self.teach_mode = TeachMode(window, self.workspace, self.session, self.hosts)
         self.teacher.told.connect(self.teach_mode.show_lesson)
         self.teach_mode.show_lesson(self.teacher.scene)
+        self.tabs_at_rest = TabsAtRest(window, lambda: self.idle, self)
         self.presenter.show_theme(themes.theme)
         self._connect()
         self.thumbnails = Thumbnails(window.gallery, self)
@@ -230,6 +232,7 @@ class Explorer(QObject):
         # What is being typed is taken while it can still be written.
         settle_all(self.window)
         self._memory.stop()
+        self.tabs_at_rest.stop()
         self._thrift.leave()
         self.handlers.close()
         self.teach_mode.close()

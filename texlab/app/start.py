@@ -89,6 +89,7 @@ def run_gui(image: str | None = None) -> int:
         # What is there by now stays: collections of garbage, while code is loaded, take less of the window's time.
         gc.freeze()
         explorer.start(image)
+        explorer.tabs_at_rest.start()
 
     # The shell is painted before the rest is imported.
     QTimer.singleShot(0, lambda: QTimer.singleShot(0, fill))

@@ -14,7 +14,7 @@ from texlab.widgets.control_settings import control_settings, take_control_setti
 from texlab.widgets.own_keys import OwnKeys
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from PySide6.QtGui import QContextMenuEvent
 
@@ -34,6 +34,8 @@ class Dock(OwnKeys, QWidget):
     - ``question`` says (quickly, from the scene and the dock's own controls) what is to be computed in a
       background thread; ``present`` shows the answer, ``present_nothing`` why there is none, ``present_waiting``
       that it is under way. When its own controls change what it asks, a dock emits ``asks``.
+    - A dock that takes more than a few milliseconds to make is made in ``pieces``, so that the window answers in
+      between.
     - What the user does to the session through it (take parameters, choose a pixel, save a file) it emits as
       ``intention``: a value of :mod:`texlab.state.intentions`.
     """
@@ -55,12 +57,17 @@ class Dock(OwnKeys, QWidget):
     intention = Signal(object)
     """A value of :mod:`texlab.state.intentions`."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, parent: QWidget | None = None, *, whole: bool = True) -> None:
+        """Make the dock; one that is not made as a whole is ready once ``pieces()`` has come to its end."""
         super().__init__(parent)
         self.scene = Scene()
         """The newest one, also while the dock is not seen: what goes from the window is not held here."""
         self.setObjectName(f"dock-{self.name}")
         self.setAccessibleName(self.title)
+
+    def pieces(self) -> Iterator[None]:
+        """Make what is not made yet, piece by piece; nobody else knows the dock until then."""
+        yield from ()
 
     def note_scene(self, scene: Scene) -> None:
         """Take note of the newest scene, whether the dock is seen or not."""

@@ -23,7 +23,7 @@ from texlab.widgets.slider import Slider
 from texlab_core.engine.steps import Curve
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
     from PySide6.QtGui import QResizeEvent
@@ -138,7 +138,7 @@ class ConvergenceDock(FramedDock):
     no_settings = frozenset({"iteration"})
     empty = "Curves appear while a method that iterates runs, and when a growth has finished."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the plots and the heat map."""
         self._live = LiveCurves()
         self._heat: Heat | None = None
@@ -154,7 +154,7 @@ class ConvergenceDock(FramedDock):
         self.iteration_label = Label("")
         self.add_control(self.iteration_label, "iteration-label", "Iteration of the heat map", tip)
         self.readout = self.add_readout()
-
+        yield
         self.plot = Plot("convergence-plot", "Curve of all columns")
         self.plot.hovered.connect(self._hover_curve)
         self.plot.left.connect(lambda: self.readout.setText(""))

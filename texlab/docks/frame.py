@@ -124,8 +124,8 @@ class FramedDock(Dock):
     no_settings: ClassVar[frozenset[str]] = frozenset()
     """Controls that act on the session (a column, a pixel, a lesson), and do not say how the tab stands."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, parent: QWidget | None = None, *, whole: bool = True) -> None:
+        super().__init__(parent, whole=whole)
         self.theme: Theme = DARK if self.palette().window().color().lightness() < 128 else LIGHT
         self.answer: Any = None
         self.why = ""
@@ -180,15 +180,25 @@ class FramedDock(Dock):
         layout.addWidget(self._fold)
         layout.addWidget(pages, 1)
         layout.addWidget(self._told)
-        self.build()
+        self._left = self._make_rest()
+        if whole:
+            for _ in self.pieces():
+                pass
+
+    def pieces(self) -> Iterator[None]:
+        """Make what is not made yet, piece by piece."""
+        yield from self._left
+
+    def _make_rest(self) -> Iterator[None]:
+        yield from self.build() or ()
         tip = "Drag what this tab shows into a slide; a click copies it; Ctrl+Shift+S saves it"
         self.add_control(self.handle, "picture", "Picture of this tab", tip)
         self.paint_theme(self.theme)
 
     # For subclasses.
 
-    def build(self) -> None:
-        """Make the controls and the body."""
+    def build(self) -> Iterator[None] | None:
+        """Make the controls and the body; a large one yields between its parts."""
         raise NotImplementedError
 
     def show_answer(self, answer: Any) -> None:

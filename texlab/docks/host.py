@@ -12,7 +12,7 @@ from texlab.state.scene import same_but_probe
 from texlab.widgets.once import Once
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from PySide6.QtWidgets import QDockWidget
 
@@ -37,7 +37,8 @@ class DockHost(QObject):
     Parameters
     ----------
     kind
-        A dock, or its class: then the dock is made when it is first seen in its ``frame``, or asked for.
+        A dock, or its class: then the dock is made when it is first seen in its ``frame``, piece by piece, with
+        turns of the event loop between them; or at once when it is asked for.
     slots
         Places to compute in.
 
@@ -53,6 +54,10 @@ class DockHost(QObject):
         self._dock: Dock | None = None
         self._frame: QDockWidget | None = None
         self._theme: Theme | None = None
+        # What is left to make, once that has begun.
+        self._pieces: Iterator[None] | None = None
+        self._is_making = False
+        self._half_made: tuple[Dock, Iterator[None]] | None = None
         # How the controls stand in a dock that was just made, and how they were wanted before.
         self._first: dict[str, Setting] = {}
         self._wanted: dict[str, Any] = {}
@@ -71,6 +76,7 @@ class DockHost(QObject):
         self._rest.setSingleShot(True)
         self._rest.timeout.connect(self._update)
         self._look = Once(self, 0, self._update)
+        self._more = Once(self, 0, self._go_on_making)
         if not isinstance(kind, type):
             self._take(kind)
 
@@ -79,29 +85,66 @@ class DockHost(QObject):
     @property
     def dock(self) -> Dock:
         """The dock, which is made now if nobody has seen it yet."""
-        if self._dock is None:
-            assert isinstance(self.kind, type)
-            dock = self.kind()
-            self._first = dock.settings()
-            if self._theme is not None:
-                dock.set_theme(self._theme)
-            self._take(dock)
-            self.made.emit(dock)
-            self._put()
-            wanted, self._wanted = self._wanted, {}
-            if wanted:
-                dock.take_settings(wanted)
+        # Who hears that it was made may ask for it.
+        if not self._is_making:
+            self.make()
         assert self._dock is not None
         return self._dock
 
     def make(self) -> None:
         """Make the dock now, before anybody looks at it."""
-        _ = self.dock
+        while self.make_more():
+            pass
+
+    def make_more(self) -> bool:
+        """Make the next piece of the dock, a few milliseconds of work; return whether there is more to make."""
+        if self.is_made:
+            return False
+        if self._pieces is None:
+            self._pieces = self._make_pieces()
+        pieces, self._is_making = self._pieces, True
+        # One that fails is begun anew.
+        self._pieces = None
+        try:
+            for _ in pieces:
+                self._pieces = pieces
+                break
+        finally:
+            self._is_making = False
+        return self._pieces is not None
+
+    def _make_pieces(self) -> Iterator[None]:
+        assert isinstance(self.kind, type)
+        dock = self.kind(whole=False)
+        self._half_made = dock, dock.pieces()
+        yield
+        yield from self._half_made[1]
+        self._half_made = None
+        self._first = dock.settings()
+        if self._theme is not None:
+            dock.set_theme(self._theme)
+        self._take(dock)
+        if self._scene is not None:
+            dock.note_scene(self._scene)
+        self.made.emit(dock)
+        yield
+        self._put()
+        wanted, self._wanted = self._wanted, {}
+        if wanted:
+            dock.take_settings(wanted)
+
+    def _go_on_making(self) -> None:
+        if not self.seen:
+            return
+        if self.make_more():
+            self._more.start()
+        else:
+            self._update()
 
     @property
     def is_made(self) -> bool:
         """Whether there is a dock already."""
-        return self._dock is not None
+        return self._dock is not None and self._pieces is None
 
     def set_frame(self, frame: QDockWidget) -> None:
         """Say where in the window the dock has its place; it is made when that is seen."""
@@ -122,7 +165,11 @@ class DockHost(QObject):
         if self._dock is None or self._frame is None:
             return
         before = self._frame.widget()
+        # Who came here by a key before anything was made goes on in what is made now.
+        has_keyboard = before is not None and before.hasFocus()
         self._frame.setWidget(self._dock)
+        if has_keyboard:
+            self._dock.setFocus()
         if before is not None:
             before.deleteLater()
         self._dock.show()
@@ -141,14 +188,14 @@ class DockHost(QObject):
 
     def settings(self) -> dict[str, Any]:
         """Return how the controls stand; empty while nobody has seen them and nothing else is wanted."""
-        return dict(self._wanted) if self._dock is None else self._dock.settings()
+        return self._dock.settings() if self._dock is not None and self.is_made else dict(self._wanted)
 
     def take_settings(self, wanted: Mapping[str, Any]) -> None:
         """Set what can be set; a dock that nobody has seen is made with it.
 
         What :meth:`settings` returned before the dock was made brings back how the dock was made.
         """
-        if self._dock is None:
+        if self._dock is None or not self.is_made:
             self._wanted = dict(wanted)
         else:
             self._dock.take_settings(wanted or self._first)
@@ -178,17 +225,26 @@ class DockHost(QObject):
         """Stop and join the thread."""
         self._rest.stop()
         self._look.stop()
+        self._more.stop()
         self._worker.close()
+        if self._half_made is not None:
+            # Parts that lie nowhere yet would be nobody's.
+            dock, rest = self._half_made
+            self._half_made = self._pieces = None
+            for _ in rest:
+                pass
+            dock.deleteLater()
 
     @property
     def busy(self) -> bool:
-        """Whether an answer is under way, or a newer scene waits to be asked about."""
-        return self._computing or ((self._rest.isActive() or self._look.isActive()) and self.seen)
+        """Whether an answer is under way, a newer scene waits to be asked about, or the dock is being made."""
+        soon = self._rest.isActive() or self._look.isActive() or self._more.isActive()
+        return self._computing or (soon and self.seen)
 
     @property
     def seen(self) -> bool:
         """Whether any part of the dock can be seen: Qt calls the tabs behind the front one visible, too."""
-        part: QWidget | None = self._frame if self._dock is None else self._dock
+        part: QWidget | None = self._dock if self.is_made else self._frame
         return part is not None and is_seen(part)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -205,7 +261,9 @@ class DockHost(QObject):
 
     def _update(self) -> None:
         seen = self.seen
-        if self._dock is None and not seen:
+        if not self.is_made:
+            if seen and not self._is_making:
+                self._more.start()
             return
         dock = self.dock
         if seen is not self._was_seen:

@@ -96,12 +96,10 @@ class HelpDesk(QObject):
             self._more.start()
 
     def _make_more(self) -> None:
-        """Make the next tab that nobody has seen; offer the settings of all of them when they are there."""
+        """Make more of the tabs that nobody has seen; offer the settings of all of them when they are there."""
         if self._palette is None:
             return
-        unmade = self._window.unmade
-        if unmade:
-            self._window.make_dock(unmade[0])
+        if self._window.make_more():
             self._more.start()
         else:
             self._palette.add(self._settings(self._late))

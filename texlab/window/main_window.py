@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QResizeEvent
 
     from texlab.columns.workspace import Workspace
-    from texlab.docks.base import Dock
     from texlab.docks.host import DockHost
     from texlab.state.session import Session
     from texlab.storage.settings import Settings
@@ -270,7 +269,6 @@ class MainWindow(QMainWindow):
             self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
-            self.make_dock(name)
         return dock is not None
 
     def take_stage(self, name: str = "") -> None:
@@ -299,12 +297,14 @@ class MainWindow(QMainWindow):
                 self.layouts.show_alone(name)
             dock.show()
             dock.raise_()
-            self.make_dock(name)
             dock.widget().setFocus()
 
-    def make_dock(self, name: str) -> Dock | None:
-        """Return the tab of this name, which is made now if nobody has seen it."""
-        return self._hosts[name].dock if name in self._hosts else None
+    def make_more(self) -> bool:
+        """Make the next piece of the first tab that nobody has seen; return whether anything is left to make."""
+        unmade = self.unmade
+        if unmade:
+            self._hosts[unmade[0]].make_more()
+        return bool(self.unmade)
 
     @property
     def unmade(self) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from texlab.widgets.plain import set_tip
 from texlab_core.stats.bands import CHANNELS, Channel, band_keys, names, projection
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from texlab.state.scene import Scene
     from texlab_core.engine.steps import FloatImage
@@ -98,7 +98,7 @@ class HistogramsDock(FramedDock):
     heavy = True
     empty = "Histograms appear as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the plots and the table."""
         self._cache = BandCache()
         items = [("Pixels", "pixels"), ("Subband", "band")]
@@ -115,7 +115,10 @@ class HistogramsDock(FramedDock):
             "cumulative", "Cumulative", "The share of values below each value", lambda _: self._redraw()
         )
         self.readout = self.add_readout()
-        self.plots = [HistogramPlot(f"histograms-plot-{k}", f"Histogram {k + 1}") for k in range(3)]
+        self.plots: list[HistogramPlot] = []
+        for k in range(3):
+            yield
+            self.plots.append(HistogramPlot(f"histograms-plot-{k}", f"Histogram {k + 1}"))
         set_tip(self.plots[0], "Exemplar: solid and filled. Result: dashed.")
         self.table = NumbersTable("histograms-numbers")
         plots = QWidget()

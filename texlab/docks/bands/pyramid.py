@@ -27,7 +27,7 @@ from texlab_core.stats.bands import COLLAPSIBLE, band_keys
 from texlab_core.transforms.filters import level_size
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from PySide6.QtCore import QObject
     from PySide6.QtGui import QKeyEvent, QResizeEvent
@@ -55,7 +55,7 @@ class PyramidDock(FramedDock):
     heavy = True
     empty = "The pyramid appears as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the mosaics, the large band and the reconstruction."""
         self._pictures = PyramidPictures(BandCache(), Recent(2))
         self._selected: BandKey | None = None
@@ -64,6 +64,7 @@ class PyramidDock(FramedDock):
         self._shapes = [(1, 1)]
         self._two = False
         self._make_controls()
+        yield
         self.exemplar = MosaicView("pyramid-exemplar", "exemplar")
         self.result = MosaicView("pyramid-result", "result")
         for view in (self.exemplar, self.result):
@@ -76,9 +77,11 @@ class PyramidDock(FramedDock):
         self._pair.setSpacing(4)
         self._pair.addWidget(self.exemplar, 1)
         self._pair.addWidget(self.result, 1)
+        yield
         self.detail = BandDetail()
         self.detail.closed.connect(self._close_detail)
         self.detail.told.connect(self.readout.setText)
+        yield
         self.edited = QWidget()
         self._make_edited(self.edited)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)

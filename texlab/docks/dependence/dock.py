@@ -18,7 +18,7 @@ from texlab.widgets.view_link import ViewLink
 from texlab_core.stats.dependence import FARTHEST, MOST_LEVEL, Pair
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from texlab.docks.dependence.panels import Panel
     from texlab.state.scene import ColumnScene, Probe, Scene
@@ -56,7 +56,7 @@ class DependenceDock(FramedDock):
 
     heavy = True
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls and the panels."""
         self._brush: Rectangle | None = None
         self._probe: Probe | None = None
@@ -114,6 +114,7 @@ class DependenceDock(FramedDock):
         self.pair_name = ShortLabel(name="dependence-pair", muted=True)
         self.readout = self.add_readout()
         link = ViewLink()
+        yield
         self.views = [PanelView(f"dependence-{place}", what, link) for place, what in enumerate(SHOWN)]
         line = QHBoxLayout()
         line.setSpacing(10)

@@ -22,7 +22,7 @@ from texlab_core.engine.inputs import ImageInput, hash_arrays
 from texlab_core.engine.registry import find_method
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from texlab.state.filling import FillScene
     from texlab.state.scene import Scene
@@ -48,9 +48,9 @@ class FillDock(FillTools):
     order = 75
     empty = "A picture to paint on appears as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the tools, and begin with no picture."""
-        super().build()
+        yield from super().build()
         self._image: FloatImage | None = None
         self._exemplar: ImageInput | None = None
         self._works: dict[str, Work] = {}

@@ -17,7 +17,7 @@ from texlab.state.intentions import AskOnce, StopFill, TakeStage, Tell
 from texlab.widgets.number_box import WholeBox
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
     from PySide6.QtCore import QPoint
@@ -37,12 +37,13 @@ _MASKS = "Images (*.png *.tif *.tiff *.webp *.bmp *.pgm)"
 class FillTools(FramedDock):
     """The controls and the two canvases; what the buttons do is up to :class:`FillDock`."""
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the tools and the two canvases."""
         self.canvases = {
             "mask": MaskCanvas("fill-mask", "Paint the hole", self.body),
             "region": MaskCanvas("fill-region", "Paint the region to copy from", self.body),
         }
+        yield
         self.where = self.add_choice(
             "where",
             "Picture",

@@ -22,7 +22,7 @@ from texlab.state.scene import are_same
 from texlab.widgets.plain import tip_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from PySide6.QtGui import QResizeEvent
 
@@ -65,8 +65,8 @@ class LabDock(Dock):
     order = 95
     rest_ms = 0
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, parent: QWidget | None = None, *, whole: bool = True) -> None:
+        super().__init__(parent, whole=whole)
         self.bar = QTabBar()
         self.bar.setObjectName("lab-experiments")
         self.bar.setAccessibleName("Experiments")
@@ -87,8 +87,19 @@ class LabDock(Dock):
         layout.setSpacing(0)
         layout.addWidget(self.bar)
         layout.addWidget(self.pages, 1)
-        self._show_page()
         self.bar.currentChanged.connect(self._changed)
+        if whole:
+            self._show_page()
+
+    def pieces(self) -> Iterator[None]:
+        """Make the experiment that is shown first, piece by piece."""
+        kind = PAGES[self.bar.currentIndex()]
+        if kind.name not in self._pages:
+            page = kind(whole=False)
+            yield
+            yield from page.pieces()
+            self._take(page)
+        self._show_page()
 
     @property
     def page(self) -> LabPage:
@@ -98,15 +109,20 @@ class LabDock(Dock):
     def _made(self, kind: type[LabPage]) -> LabPage:
         page = self._pages.get(kind.name)
         if page is None:
-            page = self._pages[kind.name] = kind()
-            if self._theme is not None:
-                page.set_theme(self._theme)
-            page.fold_controls(self._folded)
-            page.asks.connect(self.asks)
-            page.intention.connect(self.intention)
-            page.needs_room.connect(self._ask_for_room)
-            self.pages.addWidget(page)
+            page = kind()
+            self._take(page)
         return page
+
+    def _take(self, page: LabPage) -> None:
+        """Take an experiment in, as all of them are."""
+        self._pages[page.name] = page
+        if self._theme is not None:
+            page.set_theme(self._theme)
+        page.fold_controls(self._folded)
+        page.asks.connect(self.asks)
+        page.intention.connect(self.intention)
+        page.needs_room.connect(self._ask_for_room)
+        self.pages.addWidget(page)
 
     def choose(self, name: str) -> None:
         """Choose an experiment by its name."""

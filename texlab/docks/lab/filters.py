@@ -16,7 +16,7 @@ from texlab_core.sheets.laboratory import enlarged, gray, signed
 from texlab_core.transforms import spots_bars
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class FiltersPage(LabPage):
     help = "Spots and bars at any scale: absolute responses, kernels and footprints (Figs. 11.3 to 11.5)."
     empty = "Responses appear as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls and the pictures."""
         self._recent = Recent(8)
         tip = "What all lengths of the filters are multiplied by; 2 to 4 find broad bars"
@@ -70,6 +70,7 @@ class FiltersPage(LabPage):
         self.scale.setDecimals(1)
         self.readout = self.add_readout()
         self.pictures = Pictures("lab-filters-responses", spots_bars.FILTERS)
+        yield
         self.details = Pictures("lab-filters-details", 2, linked=False)
         self.pictures.hovered.connect(self._hover)
         self.details.hovered.connect(lambda *at: self.readout.setText(self.details.told(*at)))

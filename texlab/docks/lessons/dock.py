@@ -39,6 +39,7 @@ from texlab.widgets.picture_pane import PicturePane
 from texlab.widgets.plain import set_tip
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from PySide6.QtGui import QResizeEvent
@@ -67,7 +68,7 @@ class LessonsDock(FramedDock):
     # The step is the lesson's, and of one that is given a copy is edited.
     no_settings = frozenset({"jump", "edit"})
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the list and the words."""
         self._lesson = NO_LESSON
         self._is_folded = self._edits_copy = False
@@ -92,6 +93,7 @@ class LessonsDock(FramedDock):
             "Begin a lesson of your own with what the window shows",
             lambda: self.intention.emit(NewLesson("My lesson")),
         )
+        yield
         self.list = QTreeWidget()
         self.list.setObjectName("lessons-list")
         self.list.setAccessibleName("Lessons")
@@ -108,10 +110,12 @@ class LessonsDock(FramedDock):
         self.add_control(self.edit_button, "edit", "Edit", tip)
         self.words = StepWords()
         self.words.slid.connect(self._slid)
+        yield
         self.editor = LessonEditor()
         self.editor.changed.connect(lambda lesson, place: self.intention.emit(ChangeLesson(lesson, place)))
         self.editor.chosen.connect(lambda place: self.intention.emit(GoToStep(place, stay=True)))
         self.editor.undone.connect(lambda redo: self.intention.emit(UndoLesson(redo)))
+        yield
         self._drawing = self._make_drawing()
         both = QWidget()
         self._grid = grid = QGridLayout(both)

@@ -26,7 +26,7 @@ from texlab_core.transforms.gabor import circles, filter_bank
 from texlab_core.transforms.gabor_bank import CHANNELS, channel_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from PySide6.QtCore import QObject
 
@@ -51,7 +51,7 @@ class GaborDock(FramedDock):
     heavy = True
     empty = "Channels appear as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the frequency plane and the pictures."""
         self._recent = Recent(CACHE_BYTES, lambda each: 3 * each.plane.nbytes)
         # Until a period or an orientation is chosen, the strongest peak's are taken.
@@ -78,6 +78,7 @@ class GaborDock(FramedDock):
         tip = "Open the zebra and show its local spatial frequency: a quadrature pair, as in the textbook"
         self.zebra = self.add_button("zebra", "Zebra example", tip, self._open_zebra)
         self.readout = self.add_readout()
+        yield
         self.plane = PlanePane("gabor-plane", "Filter bank in the frequency plane")
         set_tip(self.plane, "Gain of the filters; circles: half height. Click one to see its channel.")
         self.plane.show_picture(
@@ -96,6 +97,7 @@ class GaborDock(FramedDock):
         self.titles: list[Label] = []
         self._parts: list[QWidget] = []
         for index in range(PANES):
+            yield
             pane = PicturePane(f"gabor-pane-{index}", f"Picture {index + 1}", self._link)
             pane.hovered.connect(lambda row, column, index=index: self._hover(index, row, column))
             title = Label("")

@@ -61,7 +61,7 @@ class SpectrumDock(FramedDock):
     heavy = True
     empty = "Spectra appear as soon as there is an exemplar."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the pictures, the profiles and the table."""
         self._recent = Recent(6)
         self._result_title = "result"
@@ -89,7 +89,9 @@ class SpectrumDock(FramedDock):
         self.body.installEventFilter(self)
         layout = QHBoxLayout(self.body)
         layout.setContentsMargins(6, 0, 6, 6)
+        yield
         layout.addWidget(self._make_pictures(), 3)
+        yield
         for title in self.titles:
             title.installEventFilter(self)
         layout.addWidget(self._make_plots(), 2)

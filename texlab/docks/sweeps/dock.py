@@ -33,7 +33,7 @@ from texlab_core.sheets.sweep_sheet import sweep_title, write_sheet
 from texlab_core.sheets.sweep_sources import bundled_sweeps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from PySide6.QtGui import QKeyEvent
 
@@ -55,7 +55,7 @@ class SweepsDock(FramedDock):
     order = 60
     empty = "Choose a column to vary its parameters."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the axes and the sheet."""
         self._fits = True
         # What is painted at present.
@@ -64,7 +64,9 @@ class SweepsDock(FramedDock):
         # In the order of keeping.
         self.kept: list[int] = []
         self._build_line()
+        yield
         self.panel = SweepPanel(self.name)
+        yield
         self.sheet = ContactSheetView("sweeps-sheet", "Choose what to vary, then press Start.")
         self.sheet.taken.connect(self._take)
         self.sheet.opened.connect(self._open)

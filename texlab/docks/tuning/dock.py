@@ -38,7 +38,7 @@ from texlab_core.sheets.sweep import Cell
 from texlab_core.sheets.tuning_search import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from texlab.docks.tuning.points import Group, Placed
     from texlab.widgets.plots import Line, Role
@@ -60,13 +60,14 @@ class TuningDock(FramedDock):
     order = 62
     empty = "Open a texture first."
 
-    def build(self) -> None:
+    def build(self) -> Iterator[None]:
         """Make the controls, the plot, and the place of the picture."""
         self._drawn: tuple[Any, ...] = ()
         self._redraw = Once(self, REDRAW_MS, self._show_all)
         self.points: list[Placed] = []
         self.over: Placed | None = None
         self._build_line()
+        yield
         self.plot = Plot("tuning-plot", "Two measures of every run against each other")
         self.plot.hovered.connect(self._hovered)
         self.plot.left.connect(lambda: self._point(None))
