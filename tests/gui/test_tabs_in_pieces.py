@@ -131,6 +131,24 @@ def test_whoever_asks_for_a_dock_has_it_at_once(qtbot: Any, frames: Frames) -> N
     host.close()
 
 
+@pytest.mark.parametrize("kind", dock_classes(), ids=lambda kind: kind.name)
+def test_nothing_is_left_of_a_dock_that_is_half_made(qtbot: Any, frames: Frames, kind: Any) -> None:
+    """Whoever closes the window between two pieces leaves no part behind."""
+    pieces, left = 0, True
+    before = len(QApplication.allWidgets())
+    while left:
+        pieces += 1
+        host = DockHost(kind, Slots(1), frames)
+        left = all(host.make_more() for _ in range(pieces))
+        if not left:
+            # Nothing is half made any more: it is its frame's.
+            host.dock.deleteLater()
+        host.close()
+        QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        assert len(QApplication.allWidgets()) == before, f"after {pieces} pieces"
+    assert pieces > 2
+
+
 def test_tabs_are_made_at_rest_alone(qtbot: Any, frames: Frames, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tabs_ahead, "REST_MS", 0)
     idle = [False]

@@ -119,7 +119,6 @@ class DockHost(QObject):
         self._half_made = dock, dock.pieces()
         yield
         yield from self._half_made[1]
-        self._half_made = None
         self._first = dock.settings()
         if self._theme is not None:
             dock.set_theme(self._theme)
@@ -128,6 +127,7 @@ class DockHost(QObject):
             dock.note_scene(self._scene)
         self.made.emit(dock)
         yield
+        self._half_made = None
         self._put()
         wanted, self._wanted = self._wanted, {}
         if wanted:
@@ -228,11 +228,11 @@ class DockHost(QObject):
         self._more.stop()
         self._worker.close()
         if self._half_made is not None:
-            # Parts that lie nowhere yet would be nobody's.
+            # Parts that lie nowhere yet would be nobody's; whoever lets go of the pieces ends them.
             dock, rest = self._half_made
-            self._half_made = self._pieces = None
             for _ in rest:
                 pass
+            self._half_made = self._pieces = self._dock = None
             dock.deleteLater()
 
     @property
