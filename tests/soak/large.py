@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QCoreApplication, QEvent
 
-from tests.soak.census import malloc_in_use
+from tests.soak.census import largest_arrays, malloc_in_use
 from texlab.app.memory import memory_bytes
 from texlab.app.start import application, await_threads, build, complete
 from texlab.storage.settings import Settings
@@ -79,6 +79,7 @@ def _run(options: Any) -> int:
     rest(explorer)
     look(explorer)
     before = weigh(explorer, "small")
+    print(f"    {largest_arrays(0)[0]}", flush=True)
     column = explorer.session.state.columns[-1]
     explorer.session.select(column.id)
     explorer.session.set_column_size(column.id, (options.size, options.size))
@@ -89,6 +90,7 @@ def _run(options: Any) -> int:
     print(f"{'the most at any time':20} RSS {peak_bytes() / 2**20:7.1f} MB", flush=True)
     explorer.session.remove_column(column.id)
     after = weigh(explorer, "closed")
+    print("    " + "\n    ".join(largest_arrays(12)), flush=True)
     window.close()
     window.deleteLater()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
