@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from texlab_core.engine.inputs import Input
     from texlab_core.engine.registry import Method
+    from texlab_core.engine.result import Result
 
 log = logging.getLogger(__name__)
 
@@ -46,15 +47,21 @@ class Need(NamedTuple):
 
     method: str
     channels: int
+    questions: bool = False
+    """Not the run, but what tabs ask of its result."""
 
 
 def every_need() -> tuple[Need, ...]:
-    """Return what the registered methods need for gray and for coloured exemplars."""
-    return tuple(Need(name, channels) for name in methods() for channels in (1, 3))
+    """Return what the registered methods need for gray and for coloured exemplars, then what tabs ask for."""
+    runs = (Need(name, channels) for name in methods() for channels in (1, 3))
+    asked = (name for name, method in methods().items() if method.questions or method.dimensions == 3)
+    return (*runs, *(Need(name, 3, questions=True) for name in asked))
 
 
 def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
     """Run a method once on a tiny exemplar, and once more with each of its rehearsals; forget the results.
+
+    Where that is needed, what tabs ask of a result is asked of the first one instead.
 
     Raises
     ------
@@ -67,12 +74,23 @@ def load(need: Need, should_stop: Callable[[], bool] | None = None) -> None:
     inputs |= {spec.name: exemplar for spec in method.inputs if spec.required and spec.kind == "image"}
     size = (*(DEPTH,) * (method.dimensions - 2), *OUTPUT)
     with stoppable_compiling(should_stop):
-        for params in (method.params(), *method.rehearsals):
+        for params in (method.params(), *(() if need.questions else method.rehearsals)):
             job = Job(method=method.id, inputs=inputs, params=params, size=size)
-            run(job, should_stop=should_stop, threads=1)
+            result = run(job, should_stop=should_stop, threads=1)
+            if need.questions:
+                _ask(method, result)
         # Large planes are sorted in pieces, by kernels that no tiny run needs.
         histogram.warm_up()
     _LOADED[need] = method
+
+
+def _ask(method: Method, result: Result) -> None:
+    for question in method.questions:
+        question(result)
+    if result.volume is not None:
+        from texlab_core.solids.rendering import View, render
+
+        render(result.volume, View(), (DEPTH, DEPTH))
 
 
 def load_once(need: Need, should_stop: Callable[[], bool] | None = None) -> None:

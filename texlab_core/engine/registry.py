@@ -83,6 +83,8 @@ class Method:
         ``size``, that shows what the parameters do; no result, and none to keep. None where smaller jobs serve.
     rehearsals
         Parameters with which a tiny run needs compiled code that a run with the defaults does not.
+    questions
+        ``question(result)`` with a ``Result``: what tabs ask with compiled code of its own; asked of a tiny one.
     order
         Place in lists and in the first columns of the window.
     measures
@@ -111,6 +113,7 @@ class Method:
     check: Callable[..., None] | None = None
     draft: Callable[..., FloatImage] | None = None
     rehearsals: tuple[Params, ...] = ()
+    questions: tuple[Callable[[Any], object], ...] = ()
     order: int = 100
     measures: tuple[str, ...] = ()
     random: bool = True

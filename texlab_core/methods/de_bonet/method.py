@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage, Output, Step
     from texlab_core.engine.streams import Streams
     from texlab_core.methods.de_bonet.analysis import Analysis
@@ -132,6 +133,15 @@ def synthesize(
     return (yield from report_steps(sampling, size, image, model.notes + notes))
 
 
+def ask_why(result: Result) -> None:
+    """Ask why a pixel is what it is, and which thresholds bind."""
+    from texlab_core.methods.de_bonet.binding import binding
+    from texlab_core.methods.de_bonet.explain import explain
+
+    explain(result.details.sampling, 0, 0)
+    binding(result.details.sampling, 4)
+
+
 register(
     Method(
         id="de-bonet",
@@ -151,6 +161,7 @@ register(
         check=check,
         # Sets of candidates that are never listed as a whole.
         rehearsals=(DeBonetParams(alpha=4.0),),
+        questions=(ask_why,),
         order=20,
         bytes_per_pixel=110,
         measures=("copied-share", "median-candidates", "largest-copy"),

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from texlab_core.engine.inputs import Inputs
+    from texlab_core.engine.result import Result
     from texlab_core.engine.steps import FloatImage, Output
     from texlab_core.engine.steps import Step as AnyStep
     from texlab_core.engine.streams import Streams
@@ -133,6 +134,15 @@ def draft(inputs: Inputs, params: EfrosLeungParams, size: tuple[int, int], seed:
     )
 
 
+def ask_why(result: Result) -> None:
+    """Ask why the pixel that was filled last is what it is."""
+    from texlab_core.methods.efros_leung.explain import explain
+
+    order = result.details.canvas.order
+    row, column = divmod(int(order.argmax()), order.shape[1])
+    explain(result.details, row, column)
+
+
 register(
     Method(
         id="efros-leung",
@@ -145,6 +155,7 @@ register(
         synthesize=synthesize,
         check=check,
         draft=draft,
+        questions=(ask_why,),
         inputs=(
             EXEMPLAR,
             InputSpec(
