@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import pkgutil
 from typing import TYPE_CHECKING
@@ -12,10 +13,16 @@ if TYPE_CHECKING:
 
 def dock_classes() -> tuple[type[Dock], ...]:
     """Import every file of this package and return its docks by their order: named, and no part of another."""
+    # Every window asks, and looking through the folders takes longer than making a tab.
+    return _within(tuple(__path__))
+
+
+@functools.lru_cache(maxsize=4)
+def _within(folders: tuple[str, ...]) -> tuple[type[Dock], ...]:
     from texlab.docks.base import Dock
 
     found: list[type[Dock]] = []
-    for each in pkgutil.walk_packages(__path__, f"{__name__}."):
+    for each in pkgutil.walk_packages(folders, f"{__name__}."):
         module = importlib.import_module(each.name)
         found += [
             value

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QByteArray, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
+from PySide6.QtGui import QColor, QIcon, QImage, QPainter, QPixmap
 
 from texlab_core.files.resources import resource
 
@@ -37,26 +38,28 @@ def tool_icon(name: str, theme: Theme, side: int) -> QIcon:
         When there is no such file.
     """
     drawing = resource(f"icons/tools/{name}.svg").read_text(encoding="utf-8")
-    colour = QColor(getattr(theme, _ROLES.get(name, "text")))
+    colour = QColor(getattr(theme, _ROLES.get(name, "text"))).name()
     icon = QIcon()
     for mode, share in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, PALE)):
         for ratio in RATIOS:
-            icon.addPixmap(_painted(drawing, colour, side, ratio, share), mode)
+            icon.addPixmap(QPixmap.fromImage(_painted(drawing, colour, side, ratio, share)), mode)
     return icon
 
 
-def _painted(drawing: str, colour: QColor, side: int, ratio: int, share: float) -> QPixmap:
+# Every window paints the same ones; images, since pixmaps must not outlive the application.
+@functools.lru_cache(maxsize=512)
+def _painted(drawing: str, colour: str, side: int, ratio: int, share: float) -> QImage:
     from PySide6.QtSvg import QSvgRenderer
 
-    renderer = QSvgRenderer(QByteArray(drawing.replace("currentColor", colour.name()).encode()))
-    pixmap = QPixmap(QSize(side, side) * ratio)
-    pixmap.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(pixmap)
+    renderer = QSvgRenderer(QByteArray(drawing.replace("currentColor", colour).encode()))
+    image = QImage(QSize(side, side) * ratio, QImage.Format.Format_ARGB32_Premultiplied)
+    image.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(image)
     painter.setOpacity(share)
-    renderer.render(painter, QRectF(pixmap.rect()))
+    renderer.render(painter, QRectF(image.rect()))
     painter.end()
-    pixmap.setDevicePixelRatio(ratio)
-    return pixmap
+    image.setDevicePixelRatio(ratio)
+    return image
 
 
 def application_icon() -> QIcon:
