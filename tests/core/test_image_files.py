@@ -45,7 +45,7 @@ def png(width, height, depth, colour_type, rows, extra=b""):
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + extra + chunk(b"IDAT", body) + chunk(b"IEND", b"")
 
 
-def reads(data, expected, peak):
+def assert_reads(data, expected, peak):
     """Check that the file has these integers over this maximum."""
     made = as_exemplar(data)
     expected = expected.reshape(*expected.shape[:2], -1)
@@ -61,13 +61,13 @@ def test_eight_bits(array, kind):
     if kind == "WEBP" and array.ndim == 2:
         made = as_exemplar(pillow(array, kind, **options))
         assert made.channels == 1
-    made = reads(pillow(array, kind, **options), array, 255)
+    made = assert_reads(pillow(array, kind, **options), array, 255)
     assert made.name == "image"
 
 
 @pytest.mark.parametrize("array", [GRAY16, RGB16], ids=["gray", "colour"])
 def test_sixteen_bit_png_keeps_every_bit(array):
-    reads(imagecodecs.png_encode(array), array, 65535)
+    assert_reads(imagecodecs.png_encode(array), array, 65535)
 
 
 @pytest.mark.parametrize("channels", [2, 4])
@@ -86,14 +86,14 @@ def test_png_of_few_bits(depth):
     values = np.random.default_rng(5).integers(0, 2**depth, (5, 8), dtype=np.uint8)
     shifts = depth * np.arange(per_byte - 1, -1, -1)
     packed = (values.reshape(5, -1, per_byte) << shifts).sum(axis=2).astype(np.uint8)
-    reads(png(8, 5, depth, 0, [row.tobytes() for row in packed]), values, 2**depth - 1)
+    assert_reads(png(8, 5, depth, 0, [row.tobytes() for row in packed]), values, 2**depth - 1)
 
 
 def test_palette_png():
     palette = np.random.default_rng(6).integers(0, 256, (7, 3), dtype=np.uint8)
     index = np.random.default_rng(7).integers(0, 7, (5, 6), dtype=np.uint8)
     rows = [row.tobytes() for row in index]
-    reads(png(6, 5, 8, 3, rows, chunk(b"PLTE", palette.tobytes())), palette[index], 255)
+    assert_reads(png(6, 5, 8, 3, rows, chunk(b"PLTE", palette.tobytes())), palette[index], 255)
     alpha = np.array([0, 255, 128], np.uint8)
     made = as_exemplar(png(6, 5, 8, 3, rows, chunk(b"PLTE", palette.tobytes()) + chunk(b"tRNS", alpha.tobytes())))
     share = np.concatenate([alpha, np.full(4, 255)])[index][..., None] / 255
@@ -142,7 +142,7 @@ def test_exif_orientation(orientation, kind):
         options["exif"] = exif
     data = pillow(image, kind, **options)
     upright = np.asarray(ImageOps.exif_transpose(Image.open(io.BytesIO(data))))
-    reads(data, upright, 255)
+    assert_reads(data, upright, 255)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.uint32])
@@ -210,19 +210,19 @@ def test_tiff_alpha_premultiplied_or_not():
 def test_tiff_extra_channels_are_dropped_and_it_says_so():
     array = np.random.default_rng(9).integers(0, 256, (7, 9, 5), dtype=np.uint8)
     options = {"photometric": "rgb", "planarconfig": "contig", "extrasamples": ["unspecified", "unspecified"]}
-    made = reads(tiff(array, **options), array[..., :3], 255)
+    made = assert_reads(tiff(array, **options), array[..., :3], 255)
     assert made.notes == ("Channels that are neither colour nor alpha were dropped.",)
 
 
 def test_tiff_white_is_zero_bilevel_and_palette():
-    reads(tiff(GRAY8, photometric="miniswhite"), 255 - GRAY8, 255)
-    reads(tiff(GRAY8 > 127, photometric="minisblack"), (GRAY8 > 127).astype(np.uint8), 1)
+    assert_reads(tiff(GRAY8, photometric="miniswhite"), 255 - GRAY8, 255)
+    assert_reads(tiff(GRAY8 > 127, photometric="minisblack"), (GRAY8 > 127).astype(np.uint8), 1)
     table = np.random.default_rng(10).integers(0, 256, (256, 3), dtype=np.uint8)
     for factor in (257, 256):
         data = tiff(GRAY8, photometric="palette", colormap=(table.T.astype(np.uint16) * factor))
-        reads(data, table[GRAY8], 255)
+        assert_reads(data, table[GRAY8], 255)
     deep = np.random.default_rng(11).integers(0, 65536, (3, 256), dtype=np.uint16)
-    reads(tiff(GRAY8, photometric="palette", colormap=deep), deep.T[GRAY8], 65535)
+    assert_reads(tiff(GRAY8, photometric="palette", colormap=deep), deep.T[GRAY8], 65535)
 
 
 def test_tiff_cmyk():
@@ -254,11 +254,11 @@ def test_cmyk_profile_of_another_kind_is_ignored():
 
 def test_several_pages_and_frames_use_the_first_and_say_so():
     stack = np.stack([GRAY8, 255 - GRAY8, GRAY8 // 2])
-    made = reads(tiff(stack, photometric="minisblack"), GRAY8, 255)
+    made = assert_reads(tiff(stack, photometric="minisblack"), GRAY8, 255)
     assert made.notes == ("The file has 3 pages; the first one was used.",)
     frames = [Image.fromarray(RGB8), Image.fromarray(255 - RGB8)]
     for kind, options in (("PNG", {}), ("WEBP", {"lossless": True})):
-        made = reads(pillow(frames[0], kind, save_all=True, append_images=frames[1:], **options), RGB8, 255)
+        made = assert_reads(pillow(frames[0], kind, save_all=True, append_images=frames[1:], **options), RGB8, 255)
         assert made.notes == ("The file has 2 frames; the first one was used.",)
 
 
@@ -275,11 +275,11 @@ def test_several_pages_and_frames_use_the_first_and_say_so():
     ],
 )
 def test_portable_formats_by_hand(text, values, peak):
-    reads(text, np.array(values), peak)
+    assert_reads(text, np.array(values), peak)
 
 
 def test_sixteen_bit_ppm():
-    reads(b"P6 9 7 65535\n" + RGB16.astype(">u2").tobytes(), RGB16, 65535)
+    assert_reads(b"P6 9 7 65535\n" + RGB16.astype(">u2").tobytes(), RGB16, 65535)
 
 
 @pytest.mark.parametrize(
@@ -357,7 +357,7 @@ def test_profile_keeps_alpha():
     ],
 )
 def test_broken_profile_is_noted_and_ignored(profile, note):
-    made = reads(pillow(RGB8, "PNG", icc_profile=profile), RGB8, 255)
+    made = assert_reads(pillow(RGB8, "PNG", icc_profile=profile), RGB8, 255)
     assert made.notes == (note,)
 
 
@@ -473,12 +473,12 @@ def test_paths(tmp_path):
     file = tmp_path / "wall.png"
     file.write_bytes(pillow(RGB8, "PNG"))
     for source in (file, str(file)):
-        made = reads(source, RGB8, 255)
+        made = assert_reads(source, RGB8, 255)
         assert made.name == "wall.png"
     assert as_exemplar(file, name="my wall").name == "my wall"
     sideways = tmp_path / "wrong suffix.jpg"
     sideways.write_bytes(file.read_bytes())
-    reads(sideways, RGB8, 255)
+    assert_reads(sideways, RGB8, 255)
 
 
 def test_paths_that_cannot_be_read(tmp_path, monkeypatch):

@@ -39,7 +39,7 @@ def srgb_of_light(light):
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-12) ** (1 / 2.4) - 0.055)
 
 
-def reads(data, values, peak, depth=8):
+def assert_reads(data, values, peak, depth=8):
     made = as_exemplar(data, alpha="ignore")
     values = values.reshape(*values.shape[:2], -1)
     assert np.array_equal(np.rint(made.pixels.astype(np.float64) * peak), values[..., : made.channels])
@@ -83,7 +83,7 @@ EXACT = {
 @pytest.mark.parametrize("kind", EXACT)
 def test_formats_without_loss(kind):
     data, values, peak, depth = EXACT[kind]
-    reads(data, values, peak, depth)
+    assert_reads(data, values, peak, depth)
 
 
 @pytest.mark.parametrize("kind", EXACT)
@@ -155,9 +155,9 @@ def test_gif_takes_the_first_frame_and_says_so():
         image.putpalette(palette.tobytes())
         frames.append(image)
     first = palette[np.asarray(frames[0])]
-    assert reads(pillow(frames[0], "GIF"), first, 255).notes == ()
+    assert assert_reads(pillow(frames[0], "GIF"), first, 255).notes == ()
     data = pillow(frames[0], "GIF", save_all=True, append_images=frames[1:], loop=0)
-    assert reads(data, first, 255).notes == ("The file has 3 frames; the first one was used.",)
+    assert assert_reads(data, first, 255).notes == ("The file has 3 frames; the first one was used.",)
 
 
 def psd(values, *, bits=8, mode=3):
@@ -168,8 +168,8 @@ def psd(values, *, bits=8, mode=3):
 
 
 def test_psd_gives_its_flattened_picture():
-    assert reads(psd(RGB), RGB, 255).notes == ("The flattened picture of the Photoshop file was used.",)
-    assert reads(psd(GRAY, mode=1), GRAY, 255).channels == 1
+    assert assert_reads(psd(RGB), RGB, 255).notes == ("The flattened picture of the Photoshop file was used.",)
+    assert assert_reads(psd(GRAY, mode=1), GRAY, 255).channels == 1
     with pytest.raises(
         ImageError, match="is a Photoshop file of 16 bits in mode 3; gray, RGB and CMYK of 8 bits are"
     ):

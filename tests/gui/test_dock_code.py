@@ -265,12 +265,17 @@ def test_other_methods_have_no_code(dock: CodeDock, image: Any) -> None:
 
 
 def test_both_themes_and_tiny_images(dock: CodeDock) -> None:
+    painted = []
     for theme in (DARK, LIGHT):
         dock.set_theme(theme)
-        feed(dock, msg_scene(noise(2, 3, 3)))
-        dock.grab()
-    feed(dock, msg_scene(np.zeros((5, 4, 1), np.float32)))
-    dock.grab()
+        code = feed(dock, msg_scene(noise(2, 3, 3)))
+        assert dock.message is None
+        assert code is not None
+        painted.append(dock.grab().toImage())
+    assert painted[0] != painted[1]
+    assert feed(dock, msg_scene(np.zeros((5, 4, 1), np.float32))) is not None
+    assert dock.message is None
+    assert dock.grab().toImage() != painted[1]
 
 
 # In the window.
