@@ -79,6 +79,32 @@ def test_it_is_done_at_rest_and_only_when_there_is_more_than_before(
         thrift.close()
 
 
+def test_what_is_closed_without_any_work_goes_back_too(
+    qtbot: Any, explorer: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    explorer._memory.stop()
+    given: list[int] = []
+    monkeypatch.setattr(memory, "memory_bytes", lambda: 100 * 2**20)
+    monkeypatch.setattr(memory, "give_back", lambda: given.append(1))
+    thrift = explorer._thrift
+    thrift._least = 0
+
+    def rest() -> None:
+        for _ in range(3):
+            thrift.look(memory.memory_bytes(), idle=True)
+            qtbot.waitUntil(lambda: not thrift._worker.busy)
+        thrift._least = 0
+
+    thrift.look(0, idle=False)
+    rest()
+    rest()
+    assert len(given) == 1
+    explorer.session.remove_column(explorer.session.state.columns[-1].id)
+    rest()
+    rest()
+    assert len(given) == 2
+
+
 def test_where_the_size_is_not_known_nothing_is_done(qapp: Any) -> None:
     thrift = Thrift()
     for _ in range(3):

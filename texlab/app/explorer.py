@@ -299,6 +299,7 @@ class Explorer(QObject):
         self._connect_controls()
         # It comes with every change, and also when only the history is another one.
         session.history_changed.connect(presenter.show_session)
+        session.changed.connect(self._thrift.stir)
         session.selected.connect(lambda _: presenter.show_session())
         controller.scene_changed.connect(presenter.show_scene)
         controller.scene_changed.connect(self.tuning.show_scene)

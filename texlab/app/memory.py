@@ -41,8 +41,8 @@ def give_back() -> None:
 class Thrift(QObject):
     """Gives memory back, in its own thread, once the program rests with more than it had at its least.
 
-    Once for every rest: what is freed next is freed by work. Less than at the rest before may still be too much:
-    what a large picture leaves free stays with malloc until it is asked.
+    Once for every rest, which work or a change of the session ends: a large picture is closed without any work.
+    Less than at the rest before may still be too much: what it leaves free stays with malloc until it is asked.
 
     ``changed()`` when it was given.
     """
@@ -67,6 +67,10 @@ class Thrift(QObject):
         if self._least is None or used >= self._least + STEP_BYTES:
             self._gave_at_rest = True
             self._worker.submit(lambda task: give_back())
+
+    def stir(self) -> None:
+        """Take it that something may have been freed: the next rest is another one."""
+        self._rested = self._gave_at_rest = False
 
     def leave(self) -> None:
         """Ask the thread to end, without waiting."""
