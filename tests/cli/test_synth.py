@@ -14,6 +14,7 @@ import pytest
 
 from tests.core.toy import NoiseParams, noise_method, stock
 from texlab_core import synthesize
+from texlab_core.documents.embedding import embed
 from texlab_core.documents.reading import KEY
 from texlab_core.documents.record import read_recipe, save_result
 from texlab_core.engine import registry
@@ -234,9 +235,16 @@ def test_without_a_method_it_is_de_bonet(texlab: Texlab, ramp: Path) -> None:
     assert read_recipe("a.png").method == "de-bonet"
 
 
-def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab) -> None:
-    write_image("large.png", LARGE)
-    write_image("other.png", 1 - LARGE)
+@pytest.fixture
+def short_recipes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep no picture in a recipe that is longer than a gallery texture, so that small ones are too large."""
+    monkeypatch.setitem(embed.__kwdefaults__, "limit", 256**2 * 3)
+
+
+def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab, short_recipes: None) -> None:
+    large = LARGE[:270, :260]
+    write_image("large.png", large)
+    write_image("other.png", 1 - large)
     assert texlab("synth", "large.png", *TOY, "--out", "a.png", "--size", "9x9").code == 0
     shown = texlab("redo", "a.png", "--out", "b.png")
     assert (shown.code, shown.out) == (2, "")
@@ -251,12 +259,11 @@ def test_redo_says_what_is_missing_and_takes_it(texlab: Texlab) -> None:
     assert json.loads(right.out)["same_bits"] is True
 
 
-def test_redo_takes_every_missing_image_by_its_name(texlab: Texlab) -> None:
-    # With 16 bits fewer pixels are too many for a recipe, and are sooner searched.
-    large = LARGE[:600, :620]
-    write_image("large.png", large, bits=16)
-    write_image("other.png", 1 - large, bits=16)
-    fill = ("--size", "621x600", "--set", "window=3", "--out", "a.png")
+def test_redo_takes_every_missing_image_by_its_name(texlab: Texlab, short_recipes: None) -> None:
+    large = LARGE[:270, :260]
+    write_image("large.png", large)
+    write_image("other.png", 1 - large)
+    fill = ("--size", "261x270", "--set", "window=3", "--out", "a.png")
     assert texlab("fill", "large.png", *fill).code == 0
     # The image that is grown outward is its own exemplar, and named once.
     one = texlab("redo", "a.png", "--exemplar", "large.png", "--out", "b.png", "--json")
