@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.core.test_record import levels, method, result_of  # noqa: F401
+from tests.core.toy_recipe import levels, method, result_of  # noqa: F401
 from texlab_core.documents.record import save_maps
 from texlab_core.engine.steps import Curve, Map
 from texlab_core.errors import InputError
