@@ -54,6 +54,14 @@ def measuring(result, draft=False, cache=None):
     return MeasureRun(result.image, result.job.inputs["exemplar"], result, cache, draft)
 
 
+def test_what_an_end_takes_is_counted_where_it_was_made():
+    end = ColumnRun(job, AnalysisCache())(Task())
+    # The window's thread reads it, and walks no arrays.
+    assert vars(end)["nbytes"] == end.nbytes
+    maps = sum(each.nbytes for each in (end.result.image, end.picture))
+    assert end.nbytes >= maps == 52 * 60 * 3 * (4 + 1)
+
+
 def test_a_run_can_be_stopped_at_every_question():
     whole = Task()
     ColumnRun(job, AnalysisCache())(whole)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 from texlab.state.scene import Frame
 from texlab.style.pictures import Picture, to_picture
+from texlab_core.engine.cache import array_bytes
 from texlab_core.engine.inputs import ArraysInput
 from texlab_core.engine.job import Job, job_key
 from texlab_core.engine.registry import find_method
@@ -90,6 +92,13 @@ class Finished:
     metrics: Mapping[str, float] = field(default_factory=dict)
     stored: bool = False
     """Whether it comes from the disk: without the model and the details that explain it."""
+
+    @cached_property
+    def nbytes(self) -> int:
+        """Bytes of what it holds, counted once; maps that nobody has looked at yet are not computed for that."""
+        result, seen = self.result, set[int]()
+        parts = (result.image, result.model, result.details, self.picture, [each.picture for each in self.frames])
+        return sum(array_bytes(each, seen) for each in parts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +202,10 @@ class ColumnRun:
         result = run(self.make_job(), watch, task.should_stop, cache=self.cache, threads=1)
         result = replace(result, elapsed_s=result.elapsed_s - away)
         self.state = getattr(result.details, "state", None)
-        return Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
+        end = Finished(result, to_picture(result.image), tuple(self.frames), self.draft, metrics)
+        # Counted here: whoever keeps it in the window's thread has nothing left to do.
+        _ = end.nbytes
+        return end
 
 
 @dataclass(frozen=True, eq=False)

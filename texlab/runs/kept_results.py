@@ -6,8 +6,6 @@ import threading
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Protocol
 
-from texlab_core.engine.cache import array_bytes
-
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
@@ -69,7 +67,7 @@ class KeptResults:
 
     def put(self, key: Hashable, end: Finished) -> None:
         """Keep the end of a job's run, dropping those that were not used for longest."""
-        size = _bytes(end)
+        size = end.nbytes
         with self._lock:
             self._kept[key] = end, size
             self._kept.move_to_end(key)
@@ -151,12 +149,3 @@ class KeptResults:
 
     def _sum(self) -> int:
         return sum(size for _, size in self._kept.values())
-
-
-def _bytes(end: Finished) -> int:
-    """Return what a result takes; maps that nobody has looked at yet are not computed for that."""
-    result = end.result
-    frames = [each.picture for each in end.frames]
-    seen: set[int] = set()
-    parts = (result.image, result.model, result.details, end.picture, frames)
-    return sum(array_bytes(each, seen) for each in parts)

@@ -278,7 +278,7 @@ class ImagePane(Pane):
     def _choose_filter(self) -> None:
         self._prepare()
         # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
-        pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
+        pixel = self.devicePixelRatioF() / max(self.shown_scale, 1e-9) if self._picture is not None else 0.0
         self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)
 
     def _pixel(self, place: QPointF) -> tuple[int, int]:
