@@ -20,7 +20,6 @@ from PySide6.QtWidgets import (
 
 import texlab
 from tests.gui.conftest import ids, wait_idle
-from texlab.columns.arrangement import Frame
 from texlab.columns.foot import MARGIN, Foot
 from texlab.columns.history_popup import HistoryPopup
 from texlab.columns.numbers_popup import NumbersPopup
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
 
 LEFT = Qt.MouseButton.LeftButton
-FRAMES = {"below": Frame(6, 67), "line": Frame(6, 48, 456), "beside": Frame(130, 32)}
 
 
 def test_figures_are_marked_where_they_became_better_or_worse() -> None:

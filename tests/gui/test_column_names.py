@@ -8,7 +8,6 @@ import pytest
 from PySide6.QtCore import Qt
 
 from tests.gui.conftest import ids, wait_idle
-from texlab.columns.arrangement import Frame
 from texlab.columns.titles import titles
 from texlab.state.difference import difference
 from texlab.state.scene import ColumnScene
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from texlab.app.explorer import Explorer
 
 LEFT = Qt.MouseButton.LeftButton
-FRAMES = {"below": Frame(6, 67), "line": Frame(6, 48, 456), "beside": Frame(130, 32)}
 
 
 def test_a_name_is_typed_over_the_title(qtbot: Any, explorer: Explorer) -> None:
