@@ -18,7 +18,10 @@ from texlab_core.engine.job import Job
 from texlab_core.engine.registry import find_method
 from texlab_core.engine.run import run
 from texlab_core.images.exemplar import as_exemplar
+from texlab_core.images.gallery import gallery
+from texlab_core.methods.solid.synthesis import Synthesis
 from texlab_core.solids.rendering import SHAPES, View, render, render_wrapped
+from texlab_core.transforms.luma import luma
 from texlab_core.warming import Need, load
 
 if TYPE_CHECKING:
@@ -69,15 +72,49 @@ def reset_peak() -> int:
 def test_solids_in_units() -> None:
     load(Need("solid", 3))
     one = unit()
-    mixed = cpu(solid(64, kind="mixed")) / one
+    found = {}
+    for balance in (False, True):
+        found["64^3 mixed", balance] = cpu(solid(64, kind="mixed", balance=balance)) / one
     before = reset_peak()
-    plain = cpu(solid(128)) / one
+    for balance in (True, False):
+        found["128^3 laplacian", balance] = cpu(solid(128, balance=balance)) / one
     taken = peak_bytes() - before
-    print(f"unit {1e3 * one:.2f} ms; 64^3 mixed {mixed:.0f} units; 128^3 laplacian {plain:.0f} units", end="; ")
+    print(f"unit {1e3 * one:.2f} ms", end="; ")
+    for (what, balance), units in found.items():
+        print(f"{what}, {'balanced' if balance else 'plain'}: {units:.0f} units", end="; ")
     print(f"peak {taken / 2**20:.0f} MB over the start")
-    assert mixed < 15_000
-    assert plain < 30_000
+    assert max(found["64^3 mixed", balance] for balance in (False, True)) < 15_000
+    assert max(found["128^3 laplacian", balance] for balance in (False, True)) < 30_000
     assert taken < 600 * 2**20
+
+
+@pytest.mark.parametrize("kind", ["laplacian", "mixed"])
+@pytest.mark.parametrize("coloured", [False, True], ids=["gray", "colour"])
+def test_every_band_of_the_whole_gallery_comes_nearer(
+    kind: str, coloured: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At half size, 48^3, on each colour axis by itself."""
+    made: list[Synthesis] = []
+    finish = Synthesis.finish
+
+    def watched(self: Synthesis) -> Any:
+        made.append(self)
+        return (yield from finish(self))
+
+    monkeypatch.setattr(Synthesis, "finish", watched)
+    params = find_method("solid").params(kind=kind)
+    farther, worst = [], -np.inf
+    for entry in gallery():
+        exemplar = as_exemplar(f"gallery:{entry.name}", scale=0.5)
+        if not coloured:
+            exemplar = as_exemplar(luma(exemplar.pixels), name=entry.name)
+        run(Job(method="solid", inputs={"exemplar": exemplar}, params=params, size=(48,) * 3))
+        rises = [float((state.distances - state.first).max()) for state in made.pop().states]
+        worst = max(worst, *rises)
+        if max(rises) >= 0:
+            farther.append(f"{entry.name} {max(rises):.4f}")
+    print(f"{kind}: {len(gallery()) - len(farther)} of {len(gallery())}, worst band {worst:+.4f} from its start")
+    assert farther == []
 
 
 def test_steps_come_at_least_every_50_ms() -> None:

@@ -14,10 +14,13 @@ from texlab_core.documents.record import read_recipe
 from texlab_core.engine.params import describe
 from texlab_core.engine.registry import find_method, methods
 from texlab_core.engine.run import run
+from texlab_core.images.formats.volumes import read_volume
+from texlab_core.images.formats.writing import quantize
 from texlab_core.sheets.sweep_sources import find_sweep
 
 BEFORE = Path(__file__).parent.parent / "data" / "before"
 RESULTS = sorted(BEFORE.glob("*.png"))
+SOLIDS = sorted(BEFORE.glob("*.tif"))
 PRESETS = sorted(BEFORE.glob("*.preset.json"))
 
 
@@ -27,6 +30,13 @@ def test_recipes_redo_their_bits(path: Path) -> None:
     with Image.open(path) as kept:
         expected = np.asarray(kept).reshape(image.shape)
     np.testing.assert_array_equal(np.round(image * 255).astype(np.uint8), expected)
+
+
+@pytest.mark.parametrize("path", SOLIDS, ids=[path.stem for path in SOLIDS])
+def test_recipes_of_solids_redo_their_bits(path: Path) -> None:
+    volume = run(read_recipe(path).job()).volume
+    assert volume is not None
+    np.testing.assert_array_equal(quantize(volume, 255), read_volume(path).values)
 
 
 @pytest.mark.parametrize("path", PRESETS, ids=[path.name for path in PRESETS])

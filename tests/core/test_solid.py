@@ -40,10 +40,10 @@ def make(exemplar: ImageInput, size: tuple[int, int, int], seed: int = 0, **valu
 def mixed() -> dict[str, Result]:
     exemplar = as_exemplar(as_exemplar("gallery:structured-pebbles", scale=0.5).pixels.mean(axis=-1))
     kinds = {
-        "pooled": {"kind": "mixed", "balance": True},
+        "pooled": {"kind": "mixed"},
         "plain": {"kind": "mixed", "balance": False},
         "per-slice": {"kind": "mixed", "histograms": "per-slice"},
-        "laplacian": {},
+        "laplacian": {"balance": False},
     }
     return {name: make(exemplar, (64, 64, 64), **values) for name, values in kinds.items()}
 

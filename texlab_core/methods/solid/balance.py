@@ -1,10 +1,11 @@
-"""A round after which no band is farther from the exemplar's than before.
+"""A round after which all bands are nearer to the exemplar's than those of the noise.
 
 The average of four solids that were matched one by one has bands that are weaker than each of them made them, and
-some that began near are pushed away by what their neighbours put into them. So the average is corrected: a filter
-gives every band a strength with which it is no farther away (:mod:`texlab_core.methods.solid.gains`), and bands
-whose histogram has a worse shape than before are matched once more by themselves. When that does not do, less of
-the average is taken; when nothing does, the solid stays as it is and has settled.
+some that began near are pushed away by what their neighbours put into them. So the average is corrected, as often
+as it takes: a filter gives every band a strength with which it is no farther away
+(:mod:`texlab_core.methods.solid.gains`), and bands whose histogram has too bad a shape for that are matched once
+more by themselves. A band that is still too far away is asked for more the next time. When that does not do, the
+solid stays as it is, and the next round goes a shorter way.
 
 This is ours: Heeger and Bergen 1995, section 3, take the average as it is.
 """
@@ -12,14 +13,13 @@ This is ours: Heeger and Bergen 1995, section 3, take the average as it is.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.solid.gains import Reach, find_gains
-from texlab_core.methods.solid.rounds import PIECE, match_round
-from texlab_core.methods.solid.shapes import Shapes, measure_shapes, move
+from texlab_core.methods.solid.gains import find_gains
+from texlab_core.methods.solid.shapes import Strengths, distances_of, shape_of, sweep
+from texlab_core.methods.solid.slices import CUTS
 from texlab_core.stats.histogram import match_ranks_in_place
 from texlab_core.transforms import solid_spectrum
 from texlab_core.work.tasks import row_blocks
@@ -32,17 +32,26 @@ if TYPE_CHECKING:
 
     from texlab_core.methods.solid.classes import Classes
     from texlab_core.methods.solid.rounds import AxisModel, Plan, Volume
+    from texlab_core.methods.solid.shapes import Shape
     from texlab_core.work.tasks import Task
 
-# How much a band may rise in a round, in standard deviations, as long as it stays below where it began.
-SLACK = 1e-3
-# How much of the average is taken, and which part of the way the bands are to go, one after the other.
-_TRIES = ((1.0, 0.5, 30.0), (0.4, 0.2, 3.0), (0.0, 0.5, 3.0), (0.0, 0.2, 3.0), (0.0, 0.08, 3.0))
-_CORRECTIONS = 3
-_FILTERINGS = 3
-# Part of the way that a band has to go at least, and part of its distance that its shape is to lose.
-_MARGIN, _SHARE = 0.1, 0.6
-_LONGEST = 1.5
+# How much a band may rise in a round, in parts of its distance in the noise, as long as it stays below that.
+RISE = 0.05
+# How much nearer than in the noise all bands are to be, in standard deviations: at least, and when it is aimed at.
+NEARER, _AIMED = 1e-4, 1e-3
+# How often the first round is corrected at most, and the others, which begin nearer.
+_CORRECTIONS_AT_FIRST, _CORRECTIONS = 8, 5
+_FILTERINGS = 2
+# Which part of its way a band is to go by its strength, and has to go at least.
+_AIM, _LEAST = 0.5, 0.05
+# Part of its distance that a shape is to lose, how soon it is moved at full length, and how long that is.
+_LOSS, _EAGER, _LONGEST = 0.3, 30.0, 1.5
+# What is left of these aims from one correction to the next: in the end only bands that are too far away move.
+_CALM = 0.5
+# A band that is too far away is asked for as much more, but no more than this part of where it began.
+_MOST_ASKED = 0.1
+# How much of the way to the average a round goes; the next one is taken when one fails, and after the last none.
+_SHARES = (1.0, 0.3, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,20 +66,30 @@ class State:
         (bands,) float64: W1 / sd of every band.
     first
         Those of the noise.
-    settled
-        Whether no further round is of use.
+    failed
+        How many rounds have failed.
     """
 
     volume: Volume
     distances: NDArray[np.float64]
     first: NDArray[np.float64]
-    settled: bool = False
+    failed: int = 0
+
+    @property
+    def excess(self) -> float:
+        """By how much some band is not nearer than in the noise, at most; 0 when all are."""
+        return max(float((self.distances - self.first).max()) + NEARER, 0.0)
+
+    def risen(self, before: State) -> bool:
+        """Whether some band is farther away than before by more than it may be."""
+        return bool((self.distances > before.distances + RISE * self.first).any())
 
 
 def begin(volume: Volume, model: AxisModel, plan: Plan) -> Task[State]:
     """Measure the noise that a solid is made of."""
-    shapes = yield from measure_shapes(volume, model, plan)
-    return State(volume, shapes.distances, shapes.distances)
+    shapes, _ = yield from sweep(volume, model, plan, lambda place, shape: 0.0)
+    first = distances_of(shapes)
+    return State(volume, first, first)
 
 
 def balanced_round(
@@ -92,72 +111,112 @@ def balanced_round(
     Returns
     -------
     State
-        No band is farther away than in the noise, or more than ``SLACK`` farther than before the round. Only the
-        first round may break this, where none of the tries does without.
+        All bands are nearer than in the noise, and none has risen by more than ``RISE`` of its distance there.
+        When the first round cannot keep this it comes as near to it as it can, and the next ones make up for it.
     """
-    if state.settled:
-        return state
     beginning = state.distances is state.first
-    average, _ = yield from match_round(state.volume, model, plan, tie_key)
-    least: tuple[float, State] | None = None
-    for number, (share, aim, eager) in enumerate(_TRIES):
-        key = partial(tie_key, 8, number)
-        volume = yield from _between(state.volume, average, share, model, key(0))
-        shapes = yield from measure_shapes(volume, model, plan)
-        for correction in range(1, _CORRECTIONS + 1):
-            correct = _Correction(state, model, plan, classes, aim, eager, partial(key, correction))
-            volume = yield from correct.apply(volume, shapes, reshape=correction > 1)
-            shapes = yield from measure_shapes(volume, model, plan)
-            after = State(volume, shapes.distances, state.first)
-            rise = float((after.distances - state.distances).max())
-            if rise <= SLACK and (after.distances <= np.maximum(state.first, state.distances)).all():
+    if state.failed >= len(_SHARES) and not state.excess:
+        return state
+    best: State | None = None
+    while True:
+        after = yield from _try(state, model, plan, classes, tie_key)
+        if not (after.excess or (after.risen(state) and not beginning)):
+            return after
+        if best is None or _cost(after) < _cost(best):
+            best = after
+        state = replace(state, failed=state.failed + 1)
+        # Noise is no answer, so the first round tries whatever there is.
+        if not beginning or state.failed == len(_SHARES):
+            return best if beginning or best.excess < state.excess else state
+
+
+def _try(state: State, model: AxisModel, plan: Plan, classes: Classes, tie_key: Callable[..., int]) -> Task[State]:
+    """Go a part of the way to the average, and correct it until it will do; return what came nearest to it."""
+    beginning = state.distances is state.first
+    place = min(state.failed, len(_SHARES) - 1)
+    share = _SHARES[place] * (1.0 if plan.slices is None else 1 / (1 + len(CUTS)))
+    volume = state.volume
+    if share:
+        _, volume = yield from sweep(volume, model, plan, lambda place, shape: share)
+        yield from match_ranks_in_place(volume, model.solid.pixels.sample, tie_key(place, 0))
+    # Where the bands are to be in the end.
+    wanted = np.minimum(state.distances + 0.5 * RISE * state.first, state.first - _AIMED)
+    best: State | None = None
+    corrections = _CORRECTIONS_AT_FIRST if beginning else _CORRECTIONS
+    for number in range(corrections + 1):
+        calm = _CALM**number if number < corrections else 0.0
+        corrects = _Correction(model, plan, classes, wanted, calm)
+        shapes, moved = yield from sweep(volume, model, plan, corrects.step)
+        if number or share:
+            after = replace(state, volume=volume, distances=distances_of(shapes))
+            if not (after.excess or (after.risen(state) and not beginning)):
                 return after
-            cost = 2 * max(rise, 0.0) + float(after.distances.mean())
-            if least is None or cost < least[0]:
-                least = (cost, after)
-    if beginning and least is not None:
-        return least[1]
-    return replace(state, settled=True)
+            if best is None or _cost(after) < _cost(best):
+                best = after
+        if number < corrections:
+            more = np.minimum(np.maximum(distances_of(shapes) - wanted, 0), _MOST_ASKED * state.first)
+            wanted = wanted - more
+            corrects = replace(corrects, wanted=wanted)
+            key = tie_key(place, 1 + number)
+            volume = yield from corrects.apply(volume, moved, Strengths.of(shapes), key)
+    assert best is not None
+    return best
+
+
+def _cost(state: State) -> float:
+    return 2 * state.excess + float(state.distances.mean())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Correction:
-    """How a solid is corrected that has moved some bands away."""
+    """How a solid is corrected that has moved some bands away.
 
-    state: State
+    Parameters
+    ----------
+    model, plan, classes
+        As for a round.
+    wanted
+        (bands,) at which distance each band is to be.
+    calm
+        Of the aims; 0 where nothing is to be moved.
+    """
+
     model: AxisModel
     plan: Plan
     classes: Classes
-    aim: float
-    eager: float
-    tie_key: Callable[..., int]
+    wanted: NDArray[np.float64]
+    calm: float
 
-    def apply(self, volume: Volume, shapes: Shapes, *, reshape: bool) -> Task[Volume]:
-        """Return the solid with the strengths, and if asked for the shapes, that its bands need."""
+    def step(self, place: int, shape: Shape) -> float:
+        """Return how far a band is moved; above 1, as neighbours hold a part of every band."""
+        if not self.calm:
+            return 0.0
+        least = float(shape.reach.least[0])
+        over = least - self.wanted[place] * (1 - _LOSS * self.calm)
+        return float(np.clip(_EAGER * over / max(least, 1e-9), 0, _LONGEST))
+
+    def apply(self, volume: Volume, moved: Volume, held: Strengths, key: int) -> Task[Volume]:
+        """Return the solid, moved already, with the strengths that its bands need."""
         # The voxels' histogram says how much power there is in all.
         whole = float(self.model.solid.pixels.sample.var(dtype=np.float64))
         responses = np.vstack([self.classes.responses, np.ones(self.classes.responses.shape[1])])
         spectrum = yield from solid_spectrum.forward(volume)
         power = yield from self.classes.power(spectrum)
         # What the classes say that a band holds is right but for a factor.
-        factors = np.append(shapes.variances, whole) / np.maximum(responses @ power, 1e-30)
+        factors = np.append(held.variances, whole) / np.maximum(responses @ power, 1e-30)
         responses *= factors[:, None]
-        before, reach = self.state.distances, Reach.of(shapes.quantiles, shapes.wanted, shapes.spreads)
-        least = reach.least
-        room = np.maximum(before - least, 0)
-        low, high = (shapes.variances * each for each in reach.within(before - _MARGIN * self.aim * room))
-        near, far = (shapes.variances * each for each in reach.within(before - self.aim * room))
-        steps = (self.eager * (least - before * (1 - _SHARE * self.aim)) / np.maximum(least, 1e-9)).clip(
-            0, _LONGEST
-        )
-        if reshape and steps.any():
-            volume = yield from move(volume, self.model, self.plan, steps, partial(self.tie_key, 0))
-            yield from self._match_voxels(volume, 1)
-            spectrum = yield from solid_spectrum.forward(volume)
+        room = np.maximum(self.wanted - held.reach.least, 0)
+        low, high = (held.variances * each for each in held.reach.within(self.wanted - _LEAST * self.calm * room))
+        near, far = (held.variances * each for each in held.reach.within(self.wanted - _AIM * self.calm * room))
+        if moved is not volume:
+            yield from self._match_about(moved)
+            spectrum = yield from solid_spectrum.forward(moved)
             power = yield from self.classes.power(spectrum)
+        filtered = volume
         for turn in range(_FILTERINGS):
             if turn:
-                spectrum = yield from solid_spectrum.forward(volume)
+                yield from self._match_about(filtered)
+                spectrum = yield from solid_spectrum.forward(filtered)
                 power = yield from self.classes.power(spectrum)
             now = responses @ power
             with sums_in_one_thread():
@@ -167,24 +226,18 @@ class _Correction:
                     np.append(low, whole),
                     np.append(high, whole),
                     np.append(now[:-1].clip(near, far), whole),
-                    np.maximum(np.append(shapes.spreads**2, whole), now),
+                    np.maximum(np.append(held.spreads**2, whole), now),
                 )
             yield from self.classes.apply(spectrum, gains * factors)
-            volume = yield from solid_spectrum.inverse(spectrum, volume.shape)
-            yield from self._match_voxels(volume, 2 + turn)
-        return volume
+            filtered = yield from solid_spectrum.inverse(spectrum, volume.shape)
+        yield from match_ranks_in_place(filtered, self.model.solid.pixels.sample, key)
+        return filtered
 
-    def _match_voxels(self, volume: Volume, place: int) -> Task[None]:
-        yield from match_ranks_in_place(volume, self.model.solid.pixels.sample, self.tie_key(1, place))
-
-
-def _between(volume: Volume, average: Volume, share: float, model: AxisModel, key: int) -> Task[Volume]:
-    """Return a solid between two, with the exemplar's voxels."""
-    if share in (0, 1):
-        return average if share else volume
-    mixed = np.empty_like(volume)
-    for block in row_blocks(volume.shape, PIECE):
-        mixed[block] = volume[block] + np.float32(share) * (average[block] - volume[block])
-        yield mixed[block].size // 8
-    yield from match_ranks_in_place(mixed, model.solid.pixels.sample, key)
-    return mixed
+    def _match_about(self, volume: Volume) -> Task[None]:
+        """Give the voxels about the exemplar's values, in a third of the time of the exact ones."""
+        shape = yield from shape_of(volume, self.model.solid.pixels)
+        changes = volume.copy()
+        yield from shape.to_changes(changes, 1.0)
+        for block in row_blocks(volume.shape):
+            volume[block] += changes[block]
+            yield volume[block].size // 8

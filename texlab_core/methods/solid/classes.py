@@ -17,6 +17,7 @@ from texlab_core.transforms import solid_spectrum
 from texlab_core.transforms.filters import level_size
 from texlab_core.transforms.steerable import Transform, crop_blocks
 from texlab_core.work.tasks import row_blocks
+from texlab_core.work.threads import sums_in_one_thread
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,14 +88,20 @@ class Classes:
                     sums += gain * response[:, :part]
                     yield sums.size
                 place += len(responses)
+        terms = [(gain * sign, each) for gain, sums in zip(gains, self.own, strict=False) for sign, each in sums]
+        deep = np.array([factor * each[0] for factor, each in terms]).T
+        high = np.array([each[1] for _, each in terms]).T
+        wide = np.array([each[2][:half] for _, each in terms])
         for block in row_blocks(spectrum.shape, solid_spectrum.BATCH):
-            logarithm = flat[None] + rows[block, None, :] + columns[block, :, None]
-            for gain, terms in zip(gains, self.own, strict=False):
-                for sign, (deep, high, wide) in terms:
-                    logarithm += (gain * sign) * deep[block, None, None] * (high[:, None] * wide[None, :half])
+            with sums_in_one_thread():
+                logarithm = (deep[block, None] * high) @ wide
+            logarithm += flat
+            logarithm += rows[block, None, :]
+            logarithm += columns[block, :, None]
+            np.clip(logarithm, -_STRONGEST, _STRONGEST, out=logarithm)
             if block.start == 0:
                 logarithm[0, 0, 0] = 0.0
-            spectrum[block] *= np.exp(0.5 * logarithm.clip(-_STRONGEST, _STRONGEST)).astype(np.float32)
+            spectrum[block] *= np.exp((0.5 * logarithm).astype(np.float32))
             yield spectrum[block].size
 
 

@@ -41,10 +41,11 @@ class Reach:
         cls, quantiles: NDArray[np.float64], wanted: NDArray[np.float64], spreads: NDArray[np.float64]
     ) -> Reach:
         """Measure from the quantiles of the bands and of the exemplar's, (bands, n), and the spreads (bands,)."""
+        from texlab_core.kernels.histograms import scaled_distances
+
         middle = quantiles.mean(axis=1, keepdims=True)
-        around, short = quantiles - middle, wanted - middle
-        columns = [np.abs(factor * around - short).mean(axis=1) for factor in _FACTORS]
-        return cls(np.array(columns).T / spreads[:, None])
+        rows = zip(quantiles - middle, wanted - middle, strict=True)
+        return cls(np.array([scaled_distances(*row, _FACTORS) for row in rows]) / spreads[:, None])
 
     @property
     def least(self) -> NDArray[np.float64]:

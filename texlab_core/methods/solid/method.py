@@ -46,7 +46,7 @@ def estimate(inputs: Inputs, params: SolidParams, size: tuple[int, ...]) -> Esti
     # Microseconds for a voxel, on one core of an ordinary machine.
     balanced = params.balance and params.histograms == "pooled"
     plain = 0.06 + (0.06 * sides + 0.1 if sides else 0)
-    seconds = axes * samples * (0.1 + params.iterations * (3 if balanced else 1) * plain) * 1e-6
+    seconds = axes * samples * (0.1 + params.iterations * (1.5 if balanced else 1) * plain) * 1e-6
     # Volumes of floats that are there at the same time: the planes, the image, and those of two axes at work.
     volumes = 3 * axes + min(axes, 2) * ((12 if sides else 6) + (4 if balanced else 0))
     return Estimate(seconds, 4 * samples * volumes)

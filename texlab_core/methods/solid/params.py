@@ -38,13 +38,13 @@ class SolidParams(Params):
     balance: Annotated[
         bool,
         Knob(
-            help="Correct every round so that no subband moves away from the exemplar's, in two to four times the "
-            "time. Off leaves the rounds as in the paper: some subbands then end farther off than those of "
-            "the noise.",
+            help="Correct every round until all subbands are nearer to the exemplar's than those of noise. Off "
+            "leaves the rounds as in the paper: some subbands then end farther off than they began.",
             group="Synthesis",
             when=("histograms", ("pooled",)),
+            formerly=False,
         ),
-    ] = False
+    ] = True
     kind: Annotated[
         Literal["laplacian", "mixed"],
         Knob(

@@ -1,20 +1,20 @@
-"""The histograms of all bands of a solid, measured but not matched, and bands moved toward the exemplar's."""
+"""The histograms of all bands of a solid, measured, and bands moved toward the exemplar's in the same sweep."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from texlab_core.methods.heeger_bergen.rounds import match
+from texlab_core.methods.solid.gains import Reach
 from texlab_core.methods.solid.rounds import add, cut
 from texlab_core.methods.solid.slices import CUTS, Slices
 from texlab_core.transforms import solid_laplacian
-from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -24,36 +24,113 @@ if TYPE_CHECKING:
 
 # Quantiles that stand for a histogram, and bins that it is counted in.
 QUANTILES = 256
-BINS = 2048
+BINS = 4096
 _SHARES = (np.arange(QUANTILES) + 0.5) / QUANTILES
-_PIECE = 2**17
+_PIECE = 2**18
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Shapes:
-    """The histograms of all bands, in the order of ``plan.labels``.
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """The histogram of one band.
 
     Parameters
     ----------
-    distances
-        (bands,) float64: W1 / sd from the exemplar's.
-    quantiles, wanted
-        (bands, QUANTILES) float64: of the bands, and of the exemplar's.
+    target
+        The exemplar's.
+    low, width
+        Where its bins begin, and how wide they are.
+    shares
+        (BINS + 1,) float64: of the values below the bins' edges.
+    """
+
+    target: Target
+    low: float
+    width: float
+    shares: NDArray[np.float64]
+
+    @property
+    def spread(self) -> float:
+        """What distances are divided by."""
+        return self.target.spread or 1.0
+
+    @property
+    def edges(self) -> NDArray[np.float64]:
+        """(BINS + 1,) float64."""
+        return np.linspace(self.low, self.low + BINS * self.width, BINS + 1)
+
+    @cached_property
+    def distance(self) -> float:
+        """W1 / sd from the exemplar's."""
+        from texlab_core.kernels import histograms
+
+        theirs = np.empty(BINS + 1)
+        histograms.shares_below(self.target.sample, self.low, self.width, theirs)
+        apart = np.abs(self.shares - theirs)
+        return float(apart.sum() - 0.5 * (apart[0] + apart[-1])) * self.width / self.spread
+
+    @property
+    def variance(self) -> float:
+        """That of the values."""
+        share = np.diff(self.shares)
+        middle = (np.arange(BINS) + 0.5) * self.width
+        mean = float(share @ middle)
+        return float(share @ (middle - mean) ** 2)
+
+    @cached_property
+    def quantiles(self) -> NDArray[np.float64]:
+        """(QUANTILES,) float64 of the values."""
+        found: NDArray[np.float64] = np.interp(_SHARES, self.shares, self.edges)
+        return found
+
+    @cached_property
+    def reach(self) -> Reach:
+        """How near another strength brings it, one row."""
+        wanted = _quantiles(self.target, _SHARES)
+        return Reach.of(self.quantiles[None], wanted[None], np.array([self.spread]))
+
+    def to_changes(self, band: Volume, step: float) -> Task[None]:
+        """Replace the band's values by what matching would add to them, times a step."""
+        from texlab_core.kernels import histograms
+
+        table = _quantiles(self.target, self.shares).astype(np.float32)
+        scale = np.float32(1 / self.width if self.width > 0 else 0)
+        for piece in _pieces(band):
+            histograms.to_changes(piece, np.float32(self.low), scale, table, np.float32(step))
+            yield piece.size // 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Strengths:
+    """What strengths all bands have and may have, in the order of ``plan.labels``.
+
+    Parameters
+    ----------
     variances
         (bands,) float64.
     spreads
         (bands,) float64: what distances are divided by.
+    reach
+        How near other strengths bring them.
     """
 
-    distances: NDArray[np.float64]
-    quantiles: NDArray[np.float64]
-    wanted: NDArray[np.float64]
     variances: NDArray[np.float64]
     spreads: NDArray[np.float64]
+    reach: Reach
+
+    @classmethod
+    def of(cls, shapes: Sequence[Shape]) -> Strengths:
+        """Put the bands' together."""
+        return cls(
+            np.array([each.variance for each in shapes]),
+            np.array([each.spread for each in shapes]),
+            Reach(np.vstack([each.reach.distances for each in shapes])),
+        )
 
 
-def measure_shapes(volume: Volume, model: AxisModel, plan: Plan) -> Task[Shapes]:
-    """Measure the histograms of all bands that are matched.
+def sweep(
+    volume: Volume, model: AxisModel, plan: Plan, step: Callable[[int, Shape], float]
+) -> Task[tuple[list[Shape], Volume]]:
+    """Measure the histograms of all bands, and move bands toward the exemplar's.
 
     Parameters
     ----------
@@ -61,116 +138,80 @@ def measure_shapes(volume: Volume, model: AxisModel, plan: Plan) -> Task[Shapes]
         (D, H, W) float32; stays as it is.
     model, plan
         Targets, and how they are matched: pooled.
+    step
+        Says of a band how far it goes, in units of its way; 0 leaves it as it is.
+
+    Returns
+    -------
+    shapes
+        Of all bands of the volume as it was, in the order of ``plan.labels``.
+    moved
+        (D, H, W) float32; the volume itself when no band is moved.
     """
-    found, targets = [], []
+    found: list[Shape] = []
+    moved = volume
+
+    def look(band: Volume, target: Target) -> Task[bool]:
+        shape = yield from shape_of(band, target)
+        length = step(len(found), shape)
+        found.append(shape)
+        if length:
+            yield from shape.to_changes(band, length)
+        return bool(length)
+
+    some = False
     bands = yield from solid_laplacian.build(volume, plan.levels)
     for key, band in zip(plan.keys, bands, strict=True):
-        targets.append(model.solid.bands[key])
-        found.append((yield from _shape(band, targets[-1])))
+        if (yield from look(band, model.solid.bands[key])):
+            some = True
+        else:
+            band[...] = 0
+    if some:
+        moved = yield from solid_laplacian.collapse(bands)
+        yield from add(moved, volume)
     del bands
     if plan.slices is not None and model.slices is not None:
         for axes in CUTS.values():
             slices = yield from cut(volume, axes)
             whole = Slices.of(slices, plan.slices)
             spectrum = yield from whole.forward(slices)
+            total = None
             for key in plan.slices.keys(whole.size):
                 band = yield from whole.band(spectrum, key)
-                targets.append(model.slices.bands[key])
-                found.append((yield from _shape(band, targets[-1])))
-    return Shapes(
-        np.array([each[0] for each in found]),
-        np.array([each[1] for each in found]),
-        np.array([_quantiles(target) for target in targets]),
-        np.array([each[2] for each in found]),
-        np.array([target.spread or 1.0 for target in targets]),
-    )
+                if (yield from look(band, model.slices.bands[key])):
+                    total = np.zeros_like(spectrum) if total is None else total
+                    yield from whole.add(total, key, band)
+            if total is not None:
+                moved = volume.copy() if moved is volume else moved
+                yield from add(moved, (yield from whole.inverse(total)).transpose(np.argsort(axes)))
+    return found, moved
 
 
-def move(
-    volume: Volume, model: AxisModel, plan: Plan, steps: NDArray[np.float64], tie_key: Callable[..., int]
-) -> Task[Volume]:
-    """Move some bands toward the exemplar's histograms and leave the others as they are.
-
-    Parameters
-    ----------
-    volume
-        (D, H, W) float32; stays as it is.
-    model, plan
-        Targets, and how they are matched: pooled.
-    steps
-        (bands,) how far, in units of the way; above 1, as neighbours hold a part of every band.
-    tie_key
-        Gives a 64-bit key for any whole numbers.
-    """
-    moved = volume.copy()
-    many = len(plan.keys)
-    bands = yield from solid_laplacian.build(volume, plan.levels)
-    for index, (key, band) in enumerate(zip(plan.keys, bands, strict=True)):
-        yield from _change(band, model.solid.bands[key], steps[index], tie_key(0, index))
-    yield from add(moved, (yield from solid_laplacian.collapse(bands)))
-    if plan.slices is None or model.slices is None:
-        return moved
-    for number, axes in enumerate(CUTS.values(), 1):
-        slices = yield from cut(volume, axes)
-        whole = Slices.of(slices, plan.slices)
-        keys = plan.slices.keys(whole.size)
-        some = steps[many : many + len(keys)]
-        many += len(keys)
-        if not some.any():
-            continue
-        spectrum = yield from whole.forward(slices)
-        total = np.zeros_like(spectrum)
-        for index, key in enumerate(keys):
-            if some[index]:
-                band = yield from whole.band(spectrum, key)
-                yield from _change(band, model.slices.bands[key], some[index], tie_key(number, index))
-                yield from whole.add(total, key, band)
-        yield from add(moved, (yield from whole.inverse(total)).transpose(np.argsort(axes)))
-    return moved
+def distances_of(shapes: Sequence[Shape]) -> NDArray[np.float64]:
+    """Return W1 / sd of all bands, (bands,) float64."""
+    return np.array([each.distance for each in shapes])
 
 
-def _change(band: Volume, target: Target, step: float, key: int) -> Task[None]:
-    """Replace a band by what matching would add to it, times a step."""
-    if step == 0:
-        band[...] = 0
-        return
-    before = band.copy()
-    yield from match(band, target, "exact", key)
-    for block in _blocks(band):
-        band[block] -= before[block]
-        band[block] *= np.float32(step)
-        yield band[block].size // 8
+def shape_of(band: Volume, target: Target) -> Task[Shape]:
+    """Count the values of a band."""
+    from texlab_core.kernels import histograms
 
-
-def _shape(band: Volume, target: Target) -> Task[tuple[float, NDArray[np.float64], float]]:
-    """Return distance, quantiles and variance of a band, from its histogram."""
     low, high = float(target.sample[0]), float(target.sample[-1])
-    total = square = 0.0
-    for block in _blocks(band):
-        part = band[block]
-        low, high = min(low, float(part.min())), max(high, float(part.max()))
-        total += float(part.sum(dtype=np.float64))
-        square += float((part.astype(np.float64) ** 2).sum())
-        yield part.size // 8
-    counts = np.zeros(BINS)
-    scale = np.float32(BINS / (high - low) if high > low else 0)
-    for block in _blocks(band):
-        places = ((band[block] - np.float32(low)) * scale).astype(np.int32).reshape(-1)
-        np.clip(places, 0, BINS - 1, out=places)
-        counts += np.bincount(places, minlength=BINS)
-        yield places.size // 4
-    edges = np.linspace(low, high, BINS + 1)
-    shares = np.concatenate([[0.0], np.cumsum(counts)]) / band.size
-    theirs = np.searchsorted(target.sample, edges.astype(np.float32)) / target.sample.size
-    theirs[0], theirs[-1] = 0.0, 1.0
-    apart = np.abs(shares - theirs)
-    distance = float((apart[1:] + apart[:-1]).sum()) * 0.5 * (high - low) / BINS
-    variance = square / band.size - (total / band.size) ** 2
-    return distance / (target.spread or 1.0), np.interp(_SHARES, shares, edges), max(variance, 0.0)
+    for piece in _pieces(band):
+        low, high = min(low, float(piece.min())), max(high, float(piece.max()))
+        yield piece.size // 16
+    width = (high - low) / BINS
+    counts = np.zeros((2, BINS), np.int32)
+    scale = np.float32(1 / width if width > 0 else 0)
+    for piece in _pieces(band):
+        histograms.count(piece, np.float32(low), scale, counts)
+        yield piece.size // 8
+    shares = np.concatenate([[0], np.cumsum(counts.sum(axis=0))]) / band.size
+    return Shape(target, low, width, shares)
 
 
-def _quantiles(target: Target) -> NDArray[np.float64]:
-    places = (_SHARES * target.sample.size - 0.5).clip(0, target.sample.size - 1)
+def _quantiles(target: Target, shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    places = (shares * target.sample.size - 0.5).clip(0, target.sample.size - 1)
     below = places.astype(np.intp)
     above = np.minimum(below + 1, target.sample.size - 1)
     share = places - below
@@ -178,5 +219,6 @@ def _quantiles(target: Target) -> NDArray[np.float64]:
     return quantiles
 
 
-def _blocks(volume: Volume) -> Iterator[slice]:
-    return iter(row_blocks(volume.shape, _PIECE))
+def _pieces(band: Volume) -> Iterator[Volume]:
+    flat = band.reshape(-1)
+    return (flat[start : start + _PIECE] for start in range(0, flat.size, _PIECE))

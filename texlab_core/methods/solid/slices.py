@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from texlab_core.methods.heeger_bergen.rounds import match
 from texlab_core.transforms.filters import level_size, spectrum_size
-from texlab_core.transforms.steerable import Transform, band_keys, crop_blocks, max_levels, quarter_turns
+from texlab_core.transforms.steerable import Transform, band_keys, crop_blocks, max_levels
 from texlab_core.work.tasks import row_blocks
 
 if TYPE_CHECKING:
@@ -156,16 +156,14 @@ class Slices:
         """Return one subband of all slices."""
         from scipy import fft
 
+        from texlab_core.kernels import spectra
+
         response = yield from self.transform.response(key)
         size = level_size(self.size, key.level)
         band = np.empty((self.many, *size), np.float32)
         for batch in self.batches(size):
             part = np.empty((batch.stop - batch.start, *spectrum_size(size)), spectrum.dtype)
-            source = spectrum[batch]
-            for here, there in crop_blocks(self.size, size):
-                np.multiply(source[:, *there], response[here], out=part[:, *here])
-            if key.kind == "oriented":
-                quarter_turns(part, -(self.transform.orientations - 1))
+            spectra.crop(spectrum[batch], response, -self._quarters(key) % 4, part)
             band[batch] = fft.irfft2(part, s=size, norm="forward", overwrite_x=True)
             yield band[batch].size
         return band
@@ -174,17 +172,18 @@ class Slices:
         """Filter a subband of all slices again and add it to their half spectra."""
         from scipy import fft
 
+        from texlab_core.kernels import spectra
+
         response = yield from self.transform.response(key)
         size = level_size(self.size, key.level)
         for batch in self.batches(size):
             part = fft.rfft2(band[batch], norm="forward")
-            part *= response
-            if key.kind == "oriented":
-                quarter_turns(part, self.transform.orientations - 1)
-            target = total[batch]
-            for here, there in crop_blocks(self.size, size):
-                target[:, *there] += part[:, *here]
+            spectra.add(part, response, self._quarters(key), total[batch])
             yield band[batch].size
+
+    def _quarters(self, key: BandKey) -> int:
+        """Return how often a band is multiplied by i when it is filtered again."""
+        return (self.transform.orientations - 1) % 4 if key.kind == "oriented" else 0
 
     def keep_lowpass(self, total: NDArray[Any], spectrum: NDArray[Any]) -> Task[None]:
         """Add the low-pass residual as it was: filtered twice, without a transform."""
