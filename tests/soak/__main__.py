@@ -48,6 +48,8 @@ STUCK_S = 0.15
 LOOK_MS = 50
 PAUSE_MS = 2
 REST_S = 120.0
+# Longer than any timer that a closed window may have left.
+SETTLE_S = 0.5
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -144,9 +146,12 @@ class Soak:
         window.deleteLater()
         gone = weakref.ref(explorer)
         del driver, explorer, window
-        for _ in range(3):
+        # Timers that were started before hold what they call until they have fired.
+        end = time.monotonic() + SETTLE_S
+        while time.monotonic() < end:
             QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
             QCoreApplication.processEvents()
+            time.sleep(0.01)
         gc.collect()
         if gone() is not None:
             self.problems.append(f"The window that was closed after {self.done} events is still in memory.")
