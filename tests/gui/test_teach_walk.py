@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QApplication
 from tests.gui.conftest import wait_idle
 from tests.gui.test_lessons import give, small_pictures, wait_ready
 from tests.gui.test_teach import seen
+from texlab.docks.lessons.words import StepWords
 from texlab.state.intentions import GoToStep, LeaveLesson
 from texlab.style.text_size import capitals_of, teach_points
 from texlab.widgets.scroll_room import ScrollRoom
@@ -108,3 +109,17 @@ def check_the_window_keeps_the_size_that_it_is_given(qtbot: Any, explorer: Explo
     # Elsewhere its parts say again how small it may be.
     QApplication.processEvents()
     assert window.minimumHeight() > 300
+
+
+def test_an_answer_comes_into_sight_when_it_is_asked_for(qtbot: Any) -> None:
+    words = StepWords()
+    qtbot.addWidget(words)
+    words.resize(300, 90)
+    words.show()
+    words.show_step(bundled()["assignment-b"].steps[2])
+    qtbot.waitUntil(lambda: words.verticalScrollBar().maximum() > 0)
+    words.reveal.click()
+    room = words.viewport().height()
+    qtbot.waitUntil(
+        lambda: words.answer.visibleRegion().boundingRect().height() >= min(words.answer.height(), room)
+    )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
+from texlab.widgets.once import Once
 from texlab.widgets.plain import Label, set_tip
 from texlab.widgets.slider import Slider
 
@@ -32,7 +33,9 @@ class StepWords(QScrollArea):
         self.reveal = QPushButton("Show the answer")
         self.reveal.setObjectName("lessons-reveal")
         self.reveal.setCheckable(True)
-        self.reveal.toggled.connect(self.answer.setVisible)
+        self.reveal.toggled.connect(self._show_answer)
+        # Words below grow first.
+        self._into_sight = Once(self, 0, lambda: self.ensureWidgetVisible(self.answer, 0, 0))
         set_tip(self.reveal, "The answer to the question, once everybody has had a try")
         self.slider_label = Label(name="lessons-series-value")
         self.slider = Slider("Value of the step", self._said)
@@ -84,6 +87,11 @@ class StepWords(QScrollArea):
             self.slider.setValue(series.values.index(own) if own in series.values else 0)
             self.slider.blockSignals(blocked)
             self._tell_value(series.parameter, own)
+
+    def _show_answer(self, shown: bool) -> None:
+        self.answer.setVisible(shown)
+        if shown:
+            self._into_sight.start()
 
     def _said(self, _place: int) -> str:
         return self.slider_label.text()
