@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QPainter, QPolygonF
+from PySide6.QtGui import QPainter, QPen, QPolygonF
 
 from texlab.style.text_size import line_scale
 from texlab.widgets.pane import Link, Pane
@@ -204,14 +204,19 @@ class MarksOverPlane(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has 
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         thickness = 1.0 if view is None else line_scale(view)
         scale = abs(painter.worldTransform().m11()) or 1.0
+        # Hundreds of marks share a few pens.
+        pens: dict[tuple[str, float, bool], QPen] = {}
         for mark in self.shown:
             thin = isinstance(mark, Ring) and mark.tint == "centre"
             for colour, width in (("#000000", 2.2 if thin else 3.5), (TINTS[mark.tint], 1.0 if thin else 1.6)):
-                pen = pg.mkPen(colour, width=width * thickness)
-                pen.setCosmetic(True)
-                if not isinstance(mark, Spot) and mark.dashed:
-                    # Dashes are counted in widths of the line.
-                    pen.setDashPattern([4 / width, 3 / width])
+                dashed = not isinstance(mark, Spot) and mark.dashed
+                pen = pens.get((colour, width, dashed))
+                if pen is None:
+                    pen = pens[colour, width, dashed] = pg.mkPen(colour, width=width * thickness)
+                    pen.setCosmetic(True)
+                    if dashed:
+                        # Dashes are counted in widths of the line.
+                        pen.setDashPattern([4 / width, 3 / width])
                 painter.setPen(pen)
                 painter.setBrush(Qt.BrushStyle.NoBrush)
                 _draw(painter, mark, thickness / scale)
