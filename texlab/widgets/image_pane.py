@@ -278,7 +278,8 @@ class ImagePane(Pane):
     def _choose_filter(self) -> None:
         self._prepare()
         # Enlarged pixels stay squares; reduced images are smoothed, or the window would show aliases.
-        pixel = self.devicePixelRatioF() / max(self.shown_scale, 1e-9) if self._picture is not None else 0.0
+        # Asking the view brings its matrix up to date: else it would be when painting, and painted a second time.
+        pixel = self.view.viewPixelSize()[0] * self.devicePixelRatioF() if self._picture is not None else 0.0
         self.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, pixel > 1.001)
 
     def _pixel(self, place: QPointF) -> tuple[int, int]:
