@@ -20,6 +20,8 @@ from texlab_core.warming import Warmth
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from texlab.app.explorer import Explorer
+
 SIDES = (29, 31)
 # One that can go on from where it was stopped, and one that keeps every iteration.
 SMALL = {"efros-leung": {"window": 5}, "heeger-bergen": {"scales": 2, "iterations": 3}}
@@ -99,3 +101,20 @@ def test_what_has_come_to_its_end_is_no_longer_held_as_a_run(qtbot: Any) -> None
     assert at.runner._run is None
     assert at.runner.scene.frames
     at.runner.close()
+
+
+def test_whoever_holds_the_view_of_a_column_that_went_holds_no_picture(qtbot: Any, explorer: Explorer) -> None:
+    session, workspace = explorer.session, explorer.workspace
+    gone = session.state.columns[0].id
+    view = workspace.columns[gone]
+    qtbot.waitUntil(lambda: view.pane.picture is not None and explorer.idle)
+    view.pane.set_overlay(np.zeros((8, 8, 4), np.uint8))
+    explorer.window.actions_by_name["tile"].trigger()
+    shown = view.scene, view.pane._overlay, view.pane.item.image, view.pane._copies[0].whole
+    assert all(each is not None for each in shown)
+    session.remove_column(gone)
+    qtbot.waitUntil(lambda: gone not in workspace.columns)
+    held = view.scene, view.pane.picture, view.pane.item.whole, view.pane.item.image, view.pane.item.qimage
+    assert all(each is None for each in held)
+    assert view.pane._overlay is None
+    assert all(copy.whole is None for copy in view.pane._copies)

@@ -192,6 +192,13 @@ class ColumnView(Cell):
         if row >= 0:
             self.pixel_clicked.emit(self.column_id, row, column)
 
+    def leave(self) -> None:
+        """Let go of everything that was shown: whoever may still hold the view holds no more than that."""
+        self.pane.detach()
+        self.pane.show_nothing()
+        self.scene = None
+        self._maps = ()
+
     def show_scene(self, scene: ColumnScene) -> None:
         """Show the state of the column; only what differs is touched."""
         if scene is self.scene:

@@ -95,7 +95,7 @@ class Workspace(QScrollArea):
             view = self.columns.pop(column_id)
             self.column_gone.emit(view)
             self.apart.drop(column_id)
-            view.pane.detach()
+            view.leave()
             view.setParent(None)
             view.deleteLater()
         added = [column_id for column_id in wanted if column_id not in self.columns]
