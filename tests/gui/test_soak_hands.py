@@ -64,8 +64,8 @@ def hands() -> Steady:
 def shown(qtbot: Any) -> Any:
     def show(ends_at: str = "") -> Told:
         made = Told(ends_at)
-        made.show()
-        qtbot.waitExposed(made)
+        with qtbot.waitExposed(made):
+            made.show()
         made.setFocus()
         return made
 

@@ -12,13 +12,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PySide6.QtGui import QImage
 
 import texlab
 import texlab_core
+from texlab import docks
 from texlab.docks.lab import filters
 from texlab.docks.thresholds import painting, table
+from texlab.style import icons
 from texlab.widgets import plain
 from texlab.window import gallery_thumbnails
+from texlab_core.files.resources import resource
 from texlab_core.images.gallery import gallery
 from texlab_core.methods.de_bonet import layout, quadtree
 from texlab_core.sheets import typeface
@@ -26,6 +30,7 @@ from texlab_core.transforms import spread
 
 SIDE = 4096
 MOST_BYTES = 16 * 2**20
+OPEN_ICON = resource("icons/tools/open.svg").read_text("utf-8")
 # The largest of what each cache that counts its values may hold; how many there can be where it does not count.
 LARGEST: dict[Any, tuple[Any, ...]] = {
     filters.filter_pictures: (7, 16.0),
@@ -38,6 +43,8 @@ LARGEST: dict[Any, tuple[Any, ...]] = {
     table.make_heads: ((), "each"),
     gallery_thumbnails._thumbnail: (f"gallery:{gallery()[0].name}",),
     typeface.typeface: ("bold",),
+    icons._painted: (OPEN_ICON, "#202020", icons.MOST_KEPT, max(icons.RATIOS), 1.0),
+    docks._within: (tuple(docks.__path__),),
 }
 COUNTS = {gallery_thumbnails._thumbnail: len(gallery()), typeface.typeface: len(typeface._FILES)}
 
@@ -62,6 +69,8 @@ def weight(value: Any) -> int:
     """Return what a value takes, its arrays included."""
     if isinstance(value, np.ndarray):
         return value.nbytes
+    if isinstance(value, QImage):
+        return value.sizeInBytes()
     if isinstance(value, tuple | list):
         return sum(map(weight, value))
     if isinstance(value, dict):

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 RATIOS = (1, 2, 3)
 # Share of its colour that a tool has while it cannot be used.
 PALE = 0.35
+# The largest side of which icons are kept.
+MOST_KEPT = 32
 _ROLES = {"run-all": "good", "stop-all": "error"}
 
 
@@ -40,14 +42,16 @@ def tool_icon(name: str, theme: Theme, side: int) -> QIcon:
     drawing = resource(f"icons/tools/{name}.svg").read_text(encoding="utf-8")
     colour = QColor(getattr(theme, _ROLES.get(name, "text"))).name()
     icon = QIcon()
+    # Large ones are rare, and one takes as much as ten others.
+    paint = _painted if side <= MOST_KEPT else _painted.__wrapped__
     for mode, share in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, PALE)):
         for ratio in RATIOS:
-            icon.addPixmap(QPixmap.fromImage(_painted(drawing, colour, side, ratio, share)), mode)
+            icon.addPixmap(QPixmap.fromImage(paint(drawing, colour, side, ratio, share)), mode)
     return icon
 
 
 # Every window paints the same ones; images, since pixmaps must not outlive the application.
-@functools.lru_cache(maxsize=512)
+@functools.lru_cache(maxsize=128)
 def _painted(drawing: str, colour: str, side: int, ratio: int, share: float) -> QImage:
     from PySide6.QtSvg import QSvgRenderer
 
