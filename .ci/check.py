@@ -81,7 +81,8 @@ def tests() -> dict[str, list[str]]:
     """
     pytest = [PYTHON, "-m", "pytest", "-q"]
     if importlib.util.find_spec("xdist"):
-        pytest += ["-n", str(max(1, min(4, os.cpu_count() or 1))), "--dist", "worksteal"]
+        # One more than processors, since tests wait for threads and processes; at most four, for the memory.
+        pytest += ["-n", str(min(4, (os.cpu_count() or 1) + 1)), "--dist", "worksteal"]
     last = ["--cov-append", "--cov-report=", "--coverage-floors"]
     if shutil.which("Xvfb") is None:
         return {"tests, off screen": [*pytest, "--no-xvfb", "--cov", *last[1:]]}
