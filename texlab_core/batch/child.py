@@ -6,8 +6,10 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections import OrderedDict
+from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -72,6 +74,8 @@ def start(stop: Event, begun: Event, folder: str) -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="texlab-parent").start()
+        # After whatever else is done at the end.
+        Finalize(None, _leave, exitpriority=-(2**31))
     # There is a process for each core already.
     os.environ.update(dict.fromkeys(SUM_VARIABLES, "1"))
     with contextlib.suppress(ImportError):
@@ -85,6 +89,14 @@ def start(stop: Event, begun: Event, folder: str) -> None:
     from texlab_core.measures.registry import measures
 
     measures(), detectors()
+
+
+def _leave() -> None:
+    """End without taking the interpreter apart, which takes longer than a job and is all for nothing."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            stream.flush()
+    os._exit(0)
 
 
 def be_ready() -> None:
