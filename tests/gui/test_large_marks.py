@@ -55,14 +55,20 @@ def sizes(*widgets: Any) -> dict[str, float]:
     return found
 
 
-@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
-def test_what_is_hit_is_as_large_as_the_text(qtbot: Any, qapp: Any, theme: Theme) -> None:
+def with_panel(qtbot: Any) -> tuple[QMainWindow, QDockWidget]:
+    """A window, and a panel in it whose title grows with the text."""
     window = QMainWindow()
     qtbot.addWidget(window)
     dock = QDockWidget("Pyramid", window)
     dock.setWidget(Label("inside"))
     grow_title(dock)
     window.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
+    return window, dock
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+def test_what_is_hit_is_as_large_as_the_text(qtbot: Any, qapp: Any, theme: Theme) -> None:
+    window, dock = with_panel(qtbot)
     parts = [QCheckBox("check"), QRadioButton("radio"), NumberBox(), WholeBox(), Slider("slider", str)]
     for part in parts:
         qtbot.addWidget(part)
@@ -91,12 +97,7 @@ def test_what_is_hit_is_as_large_as_the_text(qtbot: Any, qapp: Any, theme: Theme
 
 
 def test_the_larger_title_lets_a_panel_float_and_closes_it(qtbot: Any, qapp: Any) -> None:
-    window = QMainWindow()
-    qtbot.addWidget(window)
-    dock = QDockWidget("Pyramid", window)
-    dock.setWidget(Label("inside"))
-    grow_title(dock)
-    window.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
+    window, dock = with_panel(qtbot)
     window.show()
     before = qapp.font().pointSizeF()
     try:

@@ -70,7 +70,8 @@ def test_every_position_is_allowed(field):
     scale = Scale.of(field)
     for place in range(scale.positions + 1):
         value = scale.value(place)
-        field.check(round(value) if field.kind == "int" else value)
+        given = round(value) if field.kind == "int" else value
+        assert field.check(given) == given
 
 
 @given(int_fields(), st.data())

@@ -24,7 +24,7 @@ from texlab.state.chosen import Column, State
 from texlab.state.intentions import OpenLesson
 from texlab.state.session import Session
 from texlab.storage.autosave import Autosave
-from texlab.storage.paths import config_dir, results_dir
+from texlab.storage.paths import lessons_dir, results_dir
 from texlab.storage.projects import is_project
 from texlab.storage.reading import Choice, is_document, last_exemplar
 from texlab.storage.sessions import claim, told_of_others
@@ -106,7 +106,7 @@ class Explorer(QObject):
         """The docks by name, each made when it is first seen or asked for."""
         self.exchange = Exchange(window, settings, self.controller, self.opener)
         self.opener.locate_wanted = self.exchange.ask_locate
-        self.desk = HelpDesk(window, self.session, config_dir() / "lessons")
+        self.desk = HelpDesk(window, self.session, lessons_dir())
         self.desk.read_wanted = lambda read, done: self.controller.once("palette", lambda task: read(), done)
         self.tabs = TabPictures(window, settings, self.controller)
         self.tuning = Tuning(window, self.workspace)
@@ -131,7 +131,7 @@ class Explorer(QObject):
             self.presenter,
             self.autosave,
             self.hosts,
-            config_dir() / "lessons",
+            lessons_dir(),
         )
         self.carrier = Carrier(
             self.controller,

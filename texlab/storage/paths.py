@@ -24,6 +24,11 @@ def config_dir() -> Path:
     return _folder("config")
 
 
+def lessons_dir() -> Path:
+    """Return the folder of the lessons that the user has written (it may not exist yet)."""
+    return config_dir() / "lessons"
+
+
 def results_dir() -> Path:
     """Return the folder of finished results, which may be removed at any time (it may not exist yet)."""
     return _folder("cache") / "results"

@@ -22,11 +22,11 @@ def execute(args: argparse.Namespace) -> int:
     """Print the list; what stands among your own and cannot be used is told on standard error."""
     import sys
 
-    from texlab.storage.paths import config_dir
+    from texlab.storage.paths import lessons_dir
     from texlab_core.documents.lessons import PAPERS
     from texlab_core.lessons.shelf import bundled, own
 
-    folder = config_dir() / "lessons"
+    folder = lessons_dir()
     yours, problems = own(folder)
     lessons = [(name, name, each) for name, each in bundled().items()]
     # By its file: one of the program's may have the same name.
